@@ -1,0 +1,417 @@
+#include "core/delaunay/insert.hpp"
+
+#include "core/delaunay/lifted_predicates.hpp"
+
+namespace symcell {
+
+void DelaunayEditor::start(Cavity& cavity) {
+  cavity.triangles.clear();
+  cavity.edges.clear();
+  cavity.right_triangles = cavity.right_edges = 0;
+  cavity.simple = false;
+  walk_.clear();
+  self_met_ = false;
+  epoch_ = mesh_.new_epoch();
+}
+
+void DelaunayEditor::visit(TriangleId t, std::int32_t e, Cavity& cavity) {
+  Triangle& tri = mesh_.triangle(t);
+  tri.stamp = epoch_;
+  tri.scratch = e;
+  cavity.triangles.push_back({t, e});
+}
+
+bool DelaunayEditor::in_conflict(TriangleId t, std::int32_t e, Point2 x) const {
+  const Triangle& tri = mesh_.triangle(t);
+  if ((tri.k[0] | tri.k[1] | tri.k[2] | e) == 0) {
+    return in_circle(mesh_.point(tri.v[0]), mesh_.point(tri.v[1]), mesh_.point(tri.v[2]), x) ==
+           Sign::kPositive;
+  }
+  Point2 p[3];
+  double radius = internal::radius_bound(x);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    p[i] = mesh_.lift(tri.v[i], mesh_.shift(tri.v[i], tri.k[i], e));
+    radius = std::max(radius, internal::radius_bound(p[i]));
+  }
+  return certain_in_circle(p[0], p[1], p[2], x, radius) == Sign::kPositive;
+}
+
+void DelaunayEditor::add_side(HalfEdge h, std::int32_t e, Cavity& cavity) const {
+  const Triangle& tri = mesh_.triangle(triangle_of(h));
+  const std::uint32_t j = local_of(h), a = next3(j), b = prev3(j);
+  CavityEdge side;
+  side.a = {tri.v[a], mesh_.shift(tri.v[a], tri.k[a], e)};
+  side.b = {tri.v[b], mesh_.shift(tri.v[b], tri.k[b], e)};
+  side.mate = tri.nb[j];
+  side.off = side.mate == kNoHalfEdge ? 0 : mesh_.add(e, tri.off[j]);
+  side.seg = tri.seg[j];
+  side.face = tri.face;
+  side.was = h;
+  side.frame = e;
+  cavity.edges.push_back(side);
+}
+
+// Depth first from the edges on the stack, which leaves the sides in counter-clockwise order.
+void DelaunayEditor::grow(Point2 x, Cavity& cavity) {
+  while (!walk_.empty()) {
+    const Walk w = walk_.back();
+    walk_.pop_back();
+    const Triangle& tri = mesh_.triangle(w.t);
+    const HalfEdge g = tri.nb[w.j];
+    if (tri.seg[w.j] == kNoSubsegment && g != kNoHalfEdge) {
+      const TriangleId u = triangle_of(g);
+      const std::int32_t e = mesh_.add(w.e, tri.off[w.j]);
+      const Triangle& other = mesh_.triangle(u);
+      if (other.stamp == epoch_) {
+        if (other.scratch == e) continue;  // an edge inside the cavity, seen from its second side
+        // Another copy of a triangle of the cavity: keep it outside, remember that it was met.
+        if (in_conflict(u, e, x)) self_met_ = true;
+      } else if (in_conflict(u, e, x)) {
+        visit(u, e, cavity);
+        const std::uint32_t i = local_of(g);
+        walk_.push_back({u, e, prev3(i)});
+        walk_.push_back({u, e, next3(i)});
+        continue;
+      }
+    }
+    add_side(3 * w.t + w.j, w.e, cavity);
+  }
+}
+
+// A side whose mate lies in the cavity, at whatever exponent, would be linked to a removed triangle.
+void DelaunayEditor::check_outside(Cavity& cavity) const {
+  for (const CavityEdge& side : cavity.edges) {
+    if (side.mate != kNoHalfEdge && mesh_.triangle(triangle_of(side.mate)).stamp == epoch_) {
+      cavity.simple = false;
+      return;
+    }
+  }
+}
+
+void DelaunayEditor::compute_cavity(TriangleId t, Point2 x, Cavity& cavity) {
+  start(cavity);
+  visit(t, 0, cavity);
+  for (std::uint32_t j = 3; j-- > 0;) walk_.push_back({t, 0, j});
+  grow(x, cavity);
+  // By Euler's formula a disc without interior vertex has two sides more than triangles.
+  cavity.right_edges = cavity.edges.size();
+  cavity.right_triangles = cavity.triangles.size();
+  cavity.simple = !self_met_ && cavity.edges.size() == cavity.triangles.size() + 2;
+  if (cavity.simple) check_outside(cavity);
+}
+
+void DelaunayEditor::compute_edge_cavity(HalfEdge h, Point2 x, Cavity& cavity) {
+  start(cavity);
+  const TriangleId t = triangle_of(h);
+  const std::uint32_t j = local_of(h);
+  const HalfEdge g = mesh_.triangle(t).nb[j];
+  if (g != kNoHalfEdge && triangle_of(g) == t) return;  // (o, a, Ra): never simple
+  visit(t, 0, cavity);
+  std::int32_t e = 0;
+  if (g != kNoHalfEdge) {
+    // Both sides are marked before either grows, so that neither takes the other's triangle.
+    e = mesh_.triangle(t).off[j];
+    Triangle& other = mesh_.triangle(triangle_of(g));
+    other.stamp = epoch_;
+    other.scratch = e;
+  }
+  walk_.push_back({t, 0, prev3(j)});
+  walk_.push_back({t, 0, next3(j)});
+  grow(x, cavity);
+  cavity.right_edges = cavity.edges.size();
+  cavity.right_triangles = cavity.triangles.size();
+  bool simple = cavity.edges.size() == cavity.triangles.size() + 1;
+  if (g != kNoHalfEdge) {
+    const TriangleId u = triangle_of(g);
+    const std::uint32_t i = local_of(g);
+    cavity.triangles.push_back({u, e});
+    walk_.push_back({u, e, prev3(i)});
+    walk_.push_back({u, e, next3(i)});
+    grow(x, cavity);
+    simple = simple && cavity.edges.size() - cavity.right_edges ==
+                           cavity.triangles.size() - cavity.right_triangles + 1;
+  }
+  cavity.simple = simple && !self_met_;
+  if (cavity.simple) check_outside(cavity);
+}
+
+bool DelaunayEditor::star_is_positive(Point2 x, const Cavity& cavity) const {
+  for (const CavityEdge& side : cavity.edges) {
+    Sign s;
+    if ((side.a.k | side.b.k) == 0) {
+      s = orientation(x, mesh_.point(side.a.v), mesh_.point(side.b.v));
+    } else {
+      const Point2 a = mesh_.lift(side.a.v, side.a.k), b = mesh_.lift(side.b.v, side.b.k);
+      s = certain_orientation(x, a, b,
+                              std::max({internal::radius_bound(x), internal::radius_bound(a),
+                                        internal::radius_bound(b)}));
+    }
+    if (s != Sign::kPositive) return false;
+  }
+  return true;
+}
+
+void DelaunayEditor::fill_star(const Corner& apex,
+                               const CavityTriangle* old_triangles,
+                               std::size_t old_count,
+                               const CavityEdge* edges,
+                               std::size_t edge_count,
+                               bool closed,
+                               bool glued) {
+  star_.clear();
+  for (std::size_t i = 0; i < edge_count; ++i) {
+    if (i < old_count) {
+      mesh_.touch(old_triangles[i].t);
+      star_.push_back(old_triangles[i].t);
+    } else {
+      star_.push_back(mesh_.add_triangle());
+    }
+  }
+  for (std::size_t i = edge_count; i < old_count; ++i) mesh_.release_triangle(old_triangles[i].t);
+
+  const bool journal = mesh_.in_transaction();
+  for (std::size_t i = 0; i < edge_count; ++i) {
+    const CavityEdge& side = edges[i];
+    const TriangleId t = star_[i];
+    Triangle& tri = mesh_.triangle(t);
+    tri.v[0] = apex.v, tri.v[1] = side.a.v, tri.v[2] = side.b.v;
+    tri.k[0] = static_cast<std::int16_t>(apex.k);
+    tri.k[1] = static_cast<std::int16_t>(side.a.k);
+    tri.k[2] = static_cast<std::int16_t>(side.b.k);
+    tri.seg[0] = side.seg;
+    tri.seg[1] = tri.seg[2] = kNoSubsegment;
+    tri.face = side.face;
+    tri.queued = 0;
+    if (side.seg != kNoSubsegment) {
+      mesh_.touch_subsegment(side.seg);
+      mesh_.subsegment(side.seg).half_edge = 3 * t;
+    }
+    if (journal) {
+      mesh_.touch_vertex(side.a.v);
+      mesh_.touch_vertex(side.b.v);
+      if (side.mate != kNoHalfEdge) mesh_.touch(triangle_of(side.mate));
+    }
+    mesh_.set_corner(side.a.v, 3 * t + 1);
+    mesh_.set_corner(side.b.v, 3 * t + 2);
+  }
+  if (journal) mesh_.touch_vertex(apex.v);
+  mesh_.set_corner(apex.v, 3 * star_[0]);
+
+  for (std::size_t i = 0; i < edge_count; ++i) {
+    const CavityEdge& side = edges[i];
+    HalfEdge mate = side.mate;
+    std::int32_t off = side.off;
+    for (std::size_t g = 0; glued && g < edge_count; ++g) {
+      if (edges[g].was != mate) continue;
+      off = mesh_.subtract(off, edges[g].frame);
+      mate = 3 * star_[g];
+      break;
+    }
+    mesh_.link(3 * star_[i], mate, off);
+    if (i + 1 < edge_count) {
+      mesh_.link(3 * star_[i] + 1, 3 * star_[i + 1] + 2, 0);
+    } else if (closed) {
+      mesh_.link(3 * star_[i] + 1, 3 * star_[0] + 2, 0);
+    }
+  }
+}
+
+VertexId DelaunayEditor::place(Point2 x, const Cavity& cavity, VertexKind kind, bool closed) {
+  const VertexId v = mesh_.add_vertex(x, kind);
+  fill_star({v, 0}, cavity.triangles.data(), cavity.triangles.size(), cavity.edges.data(),
+            cavity.edges.size(), closed, !cavity.simple);
+  for (const CavityTriangle& c : cavity.triangles) {
+    if (c.e != 0) {
+      ++counters_.crossings;
+      break;
+    }
+  }
+  created_.assign(star_.begin(), star_.end());
+  return v;
+}
+
+void DelaunayEditor::queue_star_sides() {
+  for (const TriangleId t : star_) edges_.push_back(3 * t);
+}
+
+VertexId DelaunayEditor::insert_in_cavity(TriangleId t,
+                                          Point2 x,
+                                          const Cavity& cavity,
+                                          VertexKind kind) {
+  if (cavity.simple && star_is_positive(x, cavity)) return place(x, cavity, kind, true);
+
+  minimal_.simple = false;
+  minimal_.triangles.assign(1, {t, 0});
+  minimal_.edges.clear();
+  for (std::uint32_t j = 0; j < 3; ++j) add_side(3 * t + j, 0, minimal_);
+  if (!star_is_positive(x, minimal_)) return -1;
+  const VertexId v = place(x, minimal_, kind, true);
+  queue_star_sides();
+  legalise();
+  return v;
+}
+
+VertexId DelaunayEditor::insert_on_edge(HalfEdge h,
+                                        Point2 x,
+                                        const Cavity& cavity,
+                                        VertexKind kind) {
+  const TriangleId t = triangle_of(h);
+  const std::uint32_t j = local_of(h);
+  const SubsegmentId seg = mesh_.triangle(t).seg[j];
+  const HalfEdge g = mesh_.triangle(t).nb[j];
+  const bool two_sided = g != kNoHalfEdge;
+  if (cavity.simple && star_is_positive(x, cavity)) {
+    const VertexId v = place(x, cavity, kind, two_sided);
+    if (seg != kNoSubsegment) split_subsegment(seg, v, cavity);
+    return v;
+  }
+  if (two_sided && triangle_of(g) == t) return split_self_adjacent(h, x, kind);
+
+  minimal_.simple = false;
+  minimal_.triangles.assign(1, {t, 0});
+  minimal_.edges.clear();
+  add_side(3 * t + next3(j), 0, minimal_);
+  add_side(3 * t + prev3(j), 0, minimal_);
+  minimal_.right_edges = 2;
+  if (two_sided) {
+    const std::int32_t e = mesh_.triangle(t).off[j];
+    const TriangleId u = triangle_of(g);
+    minimal_.triangles.push_back({u, e});
+    add_side(3 * u + next3(local_of(g)), e, minimal_);
+    add_side(3 * u + prev3(local_of(g)), e, minimal_);
+  }
+  if (!star_is_positive(x, minimal_)) return -1;
+  const VertexId v = place(x, minimal_, kind, two_sided);
+  if (seg != kNoSubsegment) split_subsegment(seg, v, minimal_);
+  queue_star_sides();
+  legalise();
+  return v;
+}
+
+// The star of x was put in place of the cavity of an edge b -> ... -> a -> ... -> b: its sides at a
+// and b become the two halves of the subsegment.
+void DelaunayEditor::split_subsegment(SubsegmentId s, VertexId x, const Cavity& cavity) {
+  mesh_.touch_subsegment(s);
+  const SubsegmentId half = mesh_.add_subsegment(mesh_.subsegment(s).parent);
+  const auto mark = [&](HalfEdge h, SubsegmentId id) {
+    mesh_.triangle(triangle_of(h)).seg[local_of(h)] = id;
+    mesh_.subsegment(id).half_edge = h;
+  };
+  const std::size_t left = cavity.right_edges, all = cavity.edges.size();
+  const HalfEdge at_b = 3 * star_.front() + 2, at_a = 3 * star_[left - 1] + 1;
+  mark(at_b, s);
+  mark(at_a, half);
+  if (all > left) {
+    mark(3 * star_.back() + 1, s);
+    mark(3 * star_[left] + 2, half);
+  } else {
+    mesh_.link(at_b, kNoHalfEdge, 0);
+    mesh_.link(at_a, kNoHalfEdge, 0);
+  }
+  mesh_.set_corner(x, 3 * star_.front());
+}
+
+// (o, s, Rs), whose sides o -> s and Rs -> o are one edge, becomes (o, x, Rx), (x, s, Rs) and
+// (x, Rs, Rx) for x on o -> s.
+VertexId DelaunayEditor::split_self_adjacent(HalfEdge h, Point2 x, VertexKind kind) {
+  const TriangleId t = triangle_of(h);
+  const Triangle old = mesh_.triangle(t);
+  std::uint32_t io = 0;
+  while (old.v[io] != mesh_.centre()) ++io;
+  const std::uint32_t is = next3(io), ir = prev3(io);
+  // x in the frame of t and on the side o -> s; given on Rs -> o it is rotated over.
+  const std::int32_t turn = mesh_.subtract(old.k[ir], old.k[is]);
+  if (local_of(h) == is) x = mesh_.rotations().rotate(x, mesh_.subtract(0, turn));
+  const SubsegmentId seg = old.seg[ir];
+  const HalfEdge outer = old.nb[io];
+  const std::int32_t outer_off = old.off[io];
+
+  const VertexId v = mesh_.add_vertex(x, kind);
+  mesh_.touch(t);
+  mesh_.touch_vertex(mesh_.centre());
+  mesh_.touch_vertex(old.v[is]);
+  if (outer != kNoHalfEdge) mesh_.touch(triangle_of(outer));
+  const TriangleId t1 = mesh_.add_triangle(), t2 = mesh_.add_triangle();
+  const auto write = [&](TriangleId id, Corner a, Corner b, Corner c) {
+    Triangle& tri = mesh_.triangle(id);
+    const Corner corner[3] = {a, b, c};
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      tri.v[i] = corner[i].v;
+      tri.k[i] = static_cast<std::int16_t>(corner[i].k);
+      tri.seg[i] = kNoSubsegment;
+    }
+    tri.face = old.face;
+    tri.queued = 0;
+  };
+  const Corner o{old.v[io], 0}, s{old.v[is], old.k[is]}, r{old.v[ir], old.k[ir]};
+  const Corner xs{v, 0}, xr{v, turn};
+  write(t, o, xs, xr);
+  write(t1, xs, s, r);
+  write(t2, xs, r, xr);
+  // The neighbour across o -> s is this triangle rotated back by one turn.
+  const std::int32_t back = mesh_.subtract(0, turn);
+  mesh_.link(3 * t + 2, 3 * t + 1, back);        // o -> x with Rx -> o
+  mesh_.link(3 * t + 0, 3 * t2 + 1, 0);          // x -> Rx with Rx -> x
+  mesh_.link(3 * t1 + 1, 3 * t2 + 2, 0);         // Rs -> x with x -> Rs
+  mesh_.link(3 * t1 + 2, 3 * t2 + 0, back);      // x -> s with Rs -> Rx
+  mesh_.link(3 * t1 + 0, outer, outer_off);      // s -> Rs
+  mesh_.triangle(t1).seg[0] = old.seg[io];
+  if (old.seg[io] != kNoSubsegment) {
+    mesh_.touch_subsegment(old.seg[io]);
+    mesh_.subsegment(old.seg[io]).half_edge = 3 * t1;
+  }
+  if (seg != kNoSubsegment) {
+    mesh_.touch_subsegment(seg);
+    const SubsegmentId half = mesh_.add_subsegment(mesh_.subsegment(seg).parent);
+    mesh_.triangle(t).seg[1] = mesh_.triangle(t).seg[2] = seg;
+    mesh_.subsegment(seg).half_edge = 3 * t + 2;
+    mesh_.triangle(t1).seg[2] = mesh_.triangle(t2).seg[0] = half;
+    mesh_.subsegment(half).half_edge = 3 * t1 + 2;
+  }
+  mesh_.set_corner(mesh_.centre(), 3 * t);
+  mesh_.set_corner(v, 3 * t1);
+  mesh_.set_corner(old.v[is], 3 * t1 + 1);
+  ++counters_.crossings;
+  star_ = {t, t1, t2};
+  created_ = star_;
+  for (const TriangleId id : star_) {
+    for (std::uint32_t j = 0; j < 3; ++j) edges_.push_back(3 * id + j);
+  }
+  legalise();
+  return v;
+}
+
+void DelaunayEditor::legalise() {
+  // Every flip strictly lowers the lifted surface (lifted_predicates.hpp), so this ends.
+  while (!edges_.empty()) {
+    const HalfEdge h = edges_.back();
+    edges_.pop_back();
+    const TriangleId t = triangle_of(h);
+    const Triangle& tri = mesh_.triangle(t);
+    const std::uint32_t j = local_of(h);
+    if (tri.face < 0 || tri.seg[j] != kNoSubsegment || tri.nb[j] == kNoHalfEdge) continue;
+    const TriangleId u = triangle_of(tri.nb[j]);
+    if (u == t) continue;  // (o, a, Ra) is always locally Delaunay
+    const Triangle& other = mesh_.triangle(u);
+    const std::uint32_t i = local_of(tri.nb[j]);
+    const Corner p{tri.v[j], tri.k[j]};
+    const Corner a{tri.v[next3(j)], tri.k[next3(j)]}, b{tri.v[prev3(j)], tri.k[prev3(j)]};
+    const Corner q{other.v[i], mesh_.shift(other.v[i], other.k[i], tri.off[j])};
+    if (in_circle(mesh_, p, a, b, q) != Sign::kPositive) continue;
+    if (orientation(mesh_, p, a, q) != Sign::kPositive ||
+        orientation(mesh_, q, b, p) != Sign::kPositive) {
+      continue;
+    }
+    if (tri.off[j] != 0) ++counters_.crossings;
+    ++counters_.flips;
+    mesh_.flip(h);
+    created_.push_back(t);
+    created_.push_back(u);
+    edges_.push_back(3 * t + 0);
+    edges_.push_back(3 * t + 2);
+    edges_.push_back(3 * u + 0);
+    edges_.push_back(3 * u + 2);
+  }
+}
+
+}  // namespace symcell
