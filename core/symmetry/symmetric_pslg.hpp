@@ -25,7 +25,7 @@ struct OrbitVertex {
 };
 
 struct SymmetricSegment {
-  OrbitVertex a;               // not the centre unless b is not; a.exponent is 0 unless a is the centre
+  OrbitVertex a;  // not the centre unless b is not; a.exponent is 0 unless a is the centre
   OrbitVertex b;
   // First entry of this orbit in `segment_markers`: copy k has marker segment_markers[first + k] if
   // markers differ between copies (ignore_markers), else all copies share segment_markers[first].
@@ -34,20 +34,20 @@ struct SymmetricSegment {
 
 struct SymmetricPslg {
   std::int32_t fold = 1;
-  Point2 center;                        // input coordinates
-  std::vector<Point2> orbit_points;     // relative to the centre
-  std::int32_t centre_orbit = -1;       // index in orbit_points, -1: the centre is no vertex
+  Point2 center;                     // input coordinates
+  std::vector<Point2> orbit_points;  // relative to the centre
+  std::int32_t centre_orbit = -1;    // index in orbit_points, -1: the centre is no vertex
   std::vector<SymmetricSegment> segments;
   std::vector<std::int32_t> segment_markers;
-  bool uniform_markers = true;          // one marker an orbit of segments
+  bool uniform_markers = true;  // one marker an orbit of segments
   // Seeds of all copies, relative to the centre, as in the input.
   std::vector<Point2> holes;
   std::vector<PslgRegion> regions;
-  bool ignore_markers = false;          // regions may differ between copies
+  bool ignore_markers = false;  // regions may differ between copies
 
   // What was found, for statistics and `inspect`.
-  double symmetry_error_rel = 0;        // largest move of a vertex / diameter
-  double diameter = 0;                  // of the input, bounding-box diagonal
+  double symmetry_error_rel = 0;  // largest move of a vertex / diameter
+  double diameter = 0;            // of the input, bounding-box diagonal
   bool fold_detected = false;
   bool center_detected = false;
 

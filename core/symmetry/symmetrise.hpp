@@ -20,7 +20,7 @@ namespace symcell {
 // One rung of the ladder of folds that detection looked at.
 struct FoldCandidate {
   std::int32_t fold = 1;
-  double error_rel = 0;   // largest distance of a rotated vertex from the shape / diameter
+  double error_rel = 0;  // largest distance of a rotated vertex from the shape / diameter
   bool accepted = false;
 };
 
@@ -28,17 +28,17 @@ struct PslgInspection {
   std::int32_t fold = 1;
   Point2 center;
   double symmetry_error_rel = 0;
-  double area = 0;                       // of the meshed domain
+  double area = 0;  // of the meshed domain
   double diameter = 0;
   Point2 bbox_min;
   Point2 bbox_max;
   std::size_t vertices = 0;
   std::size_t segments = 0;
-  std::size_t holes = 0;                 // hole seeds
-  std::size_t regions = 0;               // region seeds
-  std::size_t components = 0;            // edge-connected pieces of the domain
-  double min_input_angle_deg = 0;        // smallest angle between segments at a vertex, in the domain
-  std::vector<FoldCandidate> folds;      // ascending
+  std::size_t holes = 0;             // hole seeds
+  std::size_t regions = 0;           // region seeds
+  std::size_t components = 0;        // edge-connected pieces of the domain
+  double min_input_angle_deg = 0;    // smallest angle between segments at a vertex, in the domain
+  std::vector<FoldCandidate> folds;  // ascending
 };
 
 // `symcell inspect`: what symmetrise would find, without meshing.  Same errors as symmetrise.
