@@ -1,0 +1,14 @@
+// Wall-clock times as milliseconds since 1970, UTC, and their text form.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace symcell::server {
+
+[[nodiscard]] std::int64_t now_ms();
+
+// RFC 3339 with milliseconds: "2024-05-01T12:00:00.123Z".
+[[nodiscard]] std::string format_timestamp(std::int64_t ms);
+
+}  // namespace symcell::server

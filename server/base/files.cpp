@@ -1,0 +1,119 @@
+#include "server/base/files.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+namespace symcell::server {
+namespace {
+
+[[noreturn]] void throw_errno(const std::string& what, const std::filesystem::path& path) {
+  throw std::system_error(errno, std::generic_category(), what + " " + path.string());
+}
+
+// A descriptor that is closed on every way out.
+class Descriptor {
+ public:
+  Descriptor(const std::filesystem::path& path, int flags)
+      : value_(::open(path.c_str(), flags | O_CLOEXEC)) {
+    if (value_ < 0) throw_errno("cannot open", path);
+  }
+  ~Descriptor() { ::close(value_); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int get() const { return value_; }
+
+ private:
+  int value_;
+};
+
+}  // namespace
+
+FileWriter::FileWriter(std::filesystem::path path)
+    : path_(std::move(path)),
+      descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)) {
+  if (descriptor_ < 0) throw_errno("cannot create", path_);
+}
+
+FileWriter::~FileWriter() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(path_.c_str());
+}
+
+void FileWriter::write(std::string_view bytes) {
+  size_ += bytes.size();
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(descriptor_, bytes.data(), bytes.size());
+    if (n < 0) {
+      if (errno == EINTR) continue;
+      throw_errno("cannot write", path_);
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+}
+
+void FileWriter::truncate() {
+  if (::ftruncate(descriptor_, 0) != 0 || ::lseek(descriptor_, 0, SEEK_SET) != 0) {
+    throw_errno("cannot truncate", path_);
+  }
+  size_ = 0;
+}
+
+void FileWriter::commit_as(const std::filesystem::path& destination) {
+  if (::fsync(descriptor_) != 0) throw_errno("cannot synchronise", path_);
+  std::filesystem::rename(path_, destination);
+  close();
+  sync_directory(destination.parent_path());
+}
+
+void FileWriter::keep() {
+  close();
+}
+
+void FileWriter::close() {
+  ::close(descriptor_);
+  descriptor_ = -1;
+}
+
+MappedFile::MappedFile(const std::filesystem::path& path) {
+  const Descriptor file(path, O_RDONLY);
+  struct stat status {};
+  if (::fstat(file.get(), &status) != 0) throw_errno("cannot look at", path);
+  size_ = static_cast<std::size_t>(status.st_size);
+  if (size_ == 0) return;
+  address_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.get(), 0);
+  if (address_ == MAP_FAILED) {
+    address_ = nullptr;
+    throw_errno("cannot map", path);
+  }
+}
+
+MappedFile::MappedFile(MappedFile&& other) noexcept
+    : address_(std::exchange(other.address_, nullptr)), size_(std::exchange(other.size_, 0)) {
+}
+
+MappedFile::~MappedFile() {
+  if (address_ != nullptr) ::munmap(address_, size_);
+}
+
+void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to) {
+  {
+    const Descriptor file(from, O_RDONLY);
+    if (::fsync(file.get()) != 0) throw_errno("cannot synchronise", from);
+  }
+  std::filesystem::rename(from, to);
+  sync_directory(to.parent_path());
+}
+
+void sync_directory(const std::filesystem::path& directory) {
+  const Descriptor folder(directory, O_RDONLY | O_DIRECTORY);
+  if (::fsync(folder.get()) != 0) throw_errno("cannot synchronise", directory);
+}
+
+}  // namespace symcell::server

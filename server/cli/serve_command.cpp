@@ -1,0 +1,244 @@
+#include "server/cli/serve_command.hpp"
+
+#include <pthread.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "api/version.hpp"
+#include "server/base/files.hpp"
+#include "server/base/log.hpp"
+#include "server/http/service.hpp"
+#include "server/jobs/local_engine.hpp"
+
+namespace symcell {
+namespace {
+
+using server::LogFormat;
+using server::Logger;
+using server::LogLevel;
+
+constexpr int kUsage = 2;
+constexpr int kFailure = 1;
+
+// What the flags say, before it becomes settings.
+struct ServeFlags {
+  std::string host = "127.0.0.1";
+  int port = 8080;
+  std::string port_file;
+  std::string data_dir;
+  std::size_t workers = std::max(1U, std::thread::hardware_concurrency());
+  std::size_t http_threads = 16;
+  std::size_t queue_limit = 100;
+  std::size_t max_body_bytes = 128UL << 20U;
+  std::uint64_t max_elements = 10'000'000;
+  double time_limit_s = 3600;
+  double grace_s = 10;
+  std::string log_level = "info";
+  std::string log_format = "text";
+  std::string cors_origin;
+  std::int64_t retention_hours = 24L * 7;
+  std::int64_t retention_jobs = 10'000;
+  std::int64_t retention_bytes = std::int64_t{20} << 30U;
+};
+
+std::filesystem::path default_data_directory() {
+  const char* state = std::getenv("XDG_STATE_HOME");
+  if (state != nullptr && *state == '/') return std::filesystem::path(state) / "symcell";
+  const char* home = std::getenv("HOME");
+  if (home != nullptr && *home != '\0') {
+    return std::filesystem::path(home) / ".local" / "state" / "symcell";
+  }
+  return {};
+}
+
+void add_network_flags(CLI::App& command, ServeFlags& flags) {
+  command.add_option("--host", flags.host, "Address to listen on; 0.0.0.0: every one")
+      ->envname("SYMCELL_HOST")
+      ->capture_default_str();
+  command.add_option("--port", flags.port, "Port; 0: any free one, which is logged")
+      ->envname("SYMCELL_PORT")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  command.add_option("--port-file", flags.port_file, "File that gets the port once it is open")
+      ->envname("SYMCELL_PORT_FILE");
+  command.add_option("--http-threads", flags.http_threads, "Connections served at once")
+      ->envname("SYMCELL_HTTP_THREADS")
+      ->check(CLI::Range(2, 1024))
+      ->capture_default_str();
+  command
+      .add_option("--max-body-bytes", flags.max_body_bytes,
+                  "Largest request body, after decompression too")
+      ->envname("SYMCELL_MAX_BODY_BYTES")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40U))
+      ->capture_default_str();
+  command
+      .add_option("--cors-origin", flags.cors_origin,
+                  "Origin whose pages may call the service, or *; default: none")
+      ->envname("SYMCELL_CORS_ORIGIN");
+}
+
+void add_job_flags(CLI::App& command, ServeFlags& flags) {
+  command
+      .add_option("--data-dir", flags.data_dir,
+                  "Where jobs and results are kept; default: $XDG_STATE_HOME/symcell or "
+                  "~/.local/state/symcell")
+      ->envname("SYMCELL_DATA_DIR");
+  command.add_option("--workers", flags.workers, "Jobs that run at once")
+      ->envname("SYMCELL_WORKERS")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command.add_option("--queue-limit", flags.queue_limit, "Jobs that may wait; more get 429")
+      ->envname("SYMCELL_QUEUE_LIMIT")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--max-elements", flags.max_elements, "Most elements of a symmetry cell")
+      ->envname("SYMCELL_MAX_ELEMENTS")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--time-limit", flags.time_limit_s, "Seconds a job may run")
+      ->envname("SYMCELL_TIME_LIMIT")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      .add_option("--grace", flags.grace_s,
+                  "Seconds that running jobs get when the server stops; then they are left for the "
+                  "next start")
+      ->envname("SYMCELL_GRACE")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str();
+}
+
+void add_retention_flags(CLI::App& command, ServeFlags& flags) {
+  command
+      .add_option("--retention-hours", flags.retention_hours,
+                  "Hours that finished jobs are kept; 0: for ever")
+      ->envname("SYMCELL_RETENTION_HOURS")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  command
+      .add_option("--retention-jobs", flags.retention_jobs, "Finished jobs that are kept; 0: all")
+      ->envname("SYMCELL_RETENTION_JOBS")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      .add_option(
+          "--retention-bytes", flags.retention_bytes,
+          "Bytes of models and results above which the oldest finished jobs go; 0: no bound")
+      ->envname("SYMCELL_RETENTION_BYTES")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
+void add_log_flags(CLI::App& command, ServeFlags& flags) {
+  command.add_option("--log-level", flags.log_level, "Least level that is logged")
+      ->envname("SYMCELL_LOG_LEVEL")
+      ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+  command.add_option("--log-format", flags.log_format, "One line an event, as text or JSON")
+      ->envname("SYMCELL_LOG_FORMAT")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+}
+
+server::ServiceSettings settings_of(const ServeFlags& flags) {
+  server::ServiceSettings settings;
+  settings.http.host = flags.host;
+  settings.http.port = flags.port;
+  settings.http.threads = flags.http_threads;
+  settings.http.max_body_bytes = flags.max_body_bytes;
+  settings.http.cors_origin = flags.cors_origin;
+  settings.jobs.workers = flags.workers;
+  settings.jobs.queue_limit = flags.queue_limit;
+  settings.jobs.time_limit_s = flags.time_limit_s;
+  settings.jobs.max_elements = flags.max_elements;
+  settings.jobs.retention = {flags.retention_hours * 3600, flags.retention_jobs,
+                             flags.retention_bytes};
+  settings.data_directory =
+      flags.data_dir.empty() ? default_data_directory() : std::filesystem::path(flags.data_dir);
+  settings.grace = std::chrono::milliseconds(static_cast<std::int64_t>(flags.grace_s * 1000));
+  return settings;
+}
+
+// Replaced as a whole: whoever waits for the file never reads half a number.
+void write_port_file(const std::string& path, int port) {
+  if (path.empty()) return;
+  const std::string temporary = path + ".part";
+  std::filesystem::remove(temporary);
+  server::FileWriter file(temporary);
+  file.write(std::to_string(port) + "\n");
+  file.commit_as(std::filesystem::absolute(path));
+}
+
+sigset_t stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  return signals;
+}
+
+int serve(const ServeFlags& flags) {
+  Logger logger(*server::log_level_from_name(flags.log_level),
+                flags.log_format == "json" ? LogFormat::kJson : LogFormat::kText);
+  const server::ServiceSettings settings = settings_of(flags);
+  if (settings.data_directory.empty()) {
+    std::cerr << "symcell serve: no place for data: set --data-dir, XDG_STATE_HOME or HOME\n";
+    return kUsage;
+  }
+  // Blocked before any thread starts, so that every thread inherits it and sigwait gets them.
+  const sigset_t signals = stop_signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+  server::LocalEngine engine;
+  auto service = std::make_unique<server::Service>(settings, engine, logger);
+  const int port = service->start();
+  write_port_file(flags.port_file, port);
+  const std::string data_directory = settings.data_directory.string();
+  logger.info("listening", {{"host", settings.http.host},
+                            {"port", std::int64_t{port}},
+                            {"data_dir", data_directory},
+                            {"workers", static_cast<std::int64_t>(settings.jobs.workers)},
+                            {"version", version()}});
+
+  int signal = 0;
+  sigwait(&signals, &signal);
+  logger.info("stopping", {{"signal", std::int64_t{signal}}});
+  const bool joined = service->stop();
+  logger.info("stopped");
+  if (!joined) {
+    // A job ignores its cancellation. It is stored and runs again at the next start; waiting for it
+    // would make the stop hang, and destroying what its thread uses would crash.
+    logger.warning("worker_left_behind");
+    std::_Exit(0);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand("serve", "Serve meshing jobs over HTTP");
+  const auto flags = std::make_shared<ServeFlags>();
+  add_network_flags(*command, *flags);
+  add_job_flags(*command, *flags);
+  add_retention_flags(*command, *flags);
+  add_log_flags(*command, *flags);
+  command->callback([flags, &exit_code] {
+    try {
+      exit_code = serve(*flags);
+    } catch (const std::exception& exception) {
+      std::cerr << "symcell serve: " << exception.what() << "\n";
+      exit_code = kFailure;
+    }
+  });
+}
+
+}  // namespace symcell

@@ -1,0 +1,320 @@
+#include "server/http/http_server.hpp"
+
+#include <httplib.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <string_view>
+
+#include "server/base/identifiers.hpp"
+#include "server/http/call.hpp"
+#include "server/http/connection.hpp"
+#include "server/http/problem_response.hpp"
+#include "server/http/task_queue.hpp"
+
+namespace symcell::server {
+namespace {
+
+constexpr int kListenBacklog = 511;
+constexpr std::size_t kMaxKeepAliveRequests = 1000;
+constexpr std::chrono::seconds kKeepAlive{15};
+
+// httplib's handlers get no data of the caller's; the thread that serves a connection leaves the
+// exchange here.
+thread_local Exchange* current_exchange = nullptr;
+
+// Ids from outside go to logs and headers: only what can do no harm there.
+bool is_usable_request_id(std::string_view id) {
+  return !id.empty() && id.size() <= 128 && std::ranges::all_of(id, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_' || c == '.';
+  });
+}
+
+std::string take_header(httplib::Request& request, const char* name) {
+  std::string value = request.get_header_value(name);
+  request.headers.erase(name);
+  return value;
+}
+
+bool is_number(const std::string& text) {
+  return !text.empty() && text.size() < 19 &&
+         std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+// Empty: the framing is sound. Two readings of where a body ends let requests be smuggled through
+// proxies, so anything but one length or plain chunks is refused.
+std::string framing_fault(const httplib::Request& request) {
+  const std::size_t lengths = request.get_header_value_count("Content-Length");
+  const std::size_t codings = request.get_header_value_count("Transfer-Encoding");
+  if (lengths > 1 || codings > 1 || (lengths == 1 && codings == 1)) {
+    return "give either one Content-Length or one Transfer-Encoding";
+  }
+  if (lengths == 1 && !is_number(request.get_header_value("Content-Length"))) {
+    return "Content-Length is not a number";
+  }
+  return {};
+}
+
+}  // namespace
+
+class HttpServer::Impl final : public httplib::Server {
+ public:
+  Impl(const HttpSettings& settings,
+       const Router& router,
+       Metrics& metrics,
+       Logger& logger,
+       std::atomic<std::size_t>& in_flight)
+      : settings_(settings),
+        router_(router),
+        metrics_(metrics),
+        logger_(logger),
+        in_flight_(in_flight),
+        stop_descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+    if (stop_descriptor_ < 0) throw std::runtime_error("cannot create an eventfd");
+    set_payload_max_length(settings_.max_body_bytes);
+    // SO_REUSEPORT, httplib's default, would let two servers share the port unnoticed.
+    set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+    });
+    set_tcp_nodelay(true);
+    new_task_queue = [this] {
+      queue_ = new BoundedTaskQueue(settings_.threads, 4 * settings_.threads);
+      return queue_;  // httplib deletes it
+    };
+    set_headers();
+    set_handlers();
+  }
+
+  ~Impl() override {
+    stop_accepting();
+    ::close(stop_descriptor_);
+  }
+
+  int bind() {
+    const int port = settings_.port == 0 ? bind_to_any_port(settings_.host)
+                     : bind_to_port(settings_.host, settings_.port) ? settings_.port
+                                                                    : -1;
+    if (port < 0) {
+      throw std::runtime_error("cannot listen on " + settings_.host + ":" +
+                               std::to_string(settings_.port));
+    }
+    // httplib's backlog of 5 refuses connections under the lightest burst.
+    ::listen(svr_sock_, kListenBacklog);
+    return port;
+  }
+
+  // Unlike httplib's own stop() this also holds if the accept loop has not begun yet.
+  void stop_accepting() {
+    const socket_t listening = svr_sock_.exchange(INVALID_SOCKET);
+    if (listening == INVALID_SOCKET) return;
+    ::shutdown(listening, SHUT_RDWR);
+    ::close(listening);
+  }
+
+  void wake_idle_connections() {
+    const std::uint64_t one = 1;
+    // Can only fail when the counter is full, and then it is readable anyhow.
+    static_cast<void>(::write(stop_descriptor_, &one, sizeof(one)) == sizeof(one));
+  }
+
+ private:
+  void set_headers() {
+    httplib::Headers headers{
+        {"X-Content-Type-Options", "nosniff"},
+        {"X-Frame-Options", "DENY"},
+        {"Referrer-Policy", "no-referrer"},
+        {"Content-Security-Policy",
+         "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'"},
+        {"Accept-Ranges", "none"},
+    };
+    if (!settings_.cors_origin.empty()) {
+      headers.emplace("Access-Control-Allow-Origin", settings_.cors_origin);
+      headers.emplace("Access-Control-Allow-Methods", "GET, HEAD, POST, DELETE, OPTIONS");
+      headers.emplace("Access-Control-Allow-Headers",
+                      "Content-Type, Content-Encoding, Prefer, Idempotency-Key, If-None-Match, "
+                      "X-Request-Id");
+      headers.emplace("Access-Control-Expose-Headers",
+                      "Location, ETag, Retry-After, X-Request-Id, Content-Disposition");
+      headers.emplace("Vary", "Origin");
+    }
+    set_default_headers(std::move(headers));
+  }
+
+  void set_handlers() {
+    const Handler plain = [this](const httplib::Request& request, httplib::Response& response) {
+      dispatch(request, response, nullptr);
+    };
+    const HandlerWithContentReader with_body =
+        [this](const httplib::Request& request, httplib::Response& response,
+               const httplib::ContentReader& reader) { dispatch(request, response, &reader); };
+    const std::string everything = "[\\s\\S]*";
+    Get(everything, plain);
+    Options(everything, plain);
+    // The form with a reader also where no body is wanted: otherwise httplib reads any body whole
+    // into memory first.
+    Post(everything, with_body);
+    Put(everything, with_body);
+    Patch(everything, with_body);
+    Delete(everything, with_body);
+    set_error_handler([](const httplib::Request& request, httplib::Response& response) {
+      if (!response.body.empty()) return;
+      // httplib refused by itself, before or after the dispatcher.
+      const ServiceProblem problem = service_problem_for_status(response.status);
+      response.set_content(
+          service_problem_json(problem, service_problem_row(problem).title, request.path),
+          "application/problem+json");
+    });
+    set_post_routing_handler([](const httplib::Request&, httplib::Response& response) {
+      if (current_exchange == nullptr) return;
+      response.set_header("X-Request-Id", current_exchange->request_id);
+      current_exchange->status = response.status;
+    });
+  }
+
+  void dispatch(const httplib::Request& request,
+                httplib::Response& response,
+                const httplib::ContentReader* reader) {
+    Exchange& exchange = *current_exchange;
+    Call call{request, response, reader, exchange, {}, {}};
+    response.status = 200;
+    const std::string fault = framing_fault(request);
+    if (!fault.empty()) {
+      exchange.close = true;
+      respond_problem(call, ServiceProblem::kBadRequest, fault);
+    } else {
+      router_.dispatch(call);
+    }
+    if (exchange.body_expected && !exchange.body_consumed) exchange.close = true;
+    if (exchange.close) response.set_header("Connection", "close");
+    if (!call.error_code.empty()) {
+      metrics_.count("symcell_request_errors_total", {{"code", call.error_code}});
+    }
+  }
+
+  // Called by httplib once the headers are read.
+  static void prepare(httplib::Request& request, Exchange& exchange) {
+    exchange.method = request.method;
+    exchange.path = request.path;
+    const std::string id = request.get_header_value("X-Request-Id");
+    if (is_usable_request_id(id)) exchange.request_id = id;
+    // httplib would compress, and inflate without a bound, by itself.
+    exchange.accept_encoding = take_header(request, "Accept-Encoding");
+    exchange.content_encoding = take_header(request, "Content-Encoding");
+    request.ranges.clear();
+    const std::string length = request.get_header_value("Content-Length");
+    exchange.body_expected =
+        request.has_header("Transfer-Encoding") || (!length.empty() && length != "0");
+  }
+
+  bool process_and_close_socket(socket_t socket) override {
+    ConnectionStream stream(socket, stop_descriptor_, ConnectionLimits{});
+    if (BoundedTaskQueue::overloaded()) {
+      refuse_connection(stream);
+    } else {
+      serve(stream);
+    }
+    ::shutdown(socket, SHUT_RDWR);
+    ::close(socket);
+    return true;
+  }
+
+  // One short write into the socket's empty buffer: never waits.
+  void refuse_connection(ConnectionStream& stream) {
+    const std::string body =
+        service_problem_json(ServiceProblem::kOverloaded, "too many connections", "");
+    const std::string answer =
+        "HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/problem+json\r\n"
+        "Retry-After: 1\r\nConnection: close\r\nContent-Length: " +
+        std::to_string(body.size()) + "\r\n\r\n" + body;
+    stream.write(answer.data(), answer.size());
+    metrics_.count("symcell_http_refused_connections_total");
+  }
+
+  void serve(ConnectionStream& stream) {
+    // An idle connection makes way when others wait for its thread.
+    const auto needed_elsewhere = [this] { return queue_->waiting() > 0; };
+    for (std::size_t served = 0; served < kMaxKeepAliveRequests; ++served) {
+      if (!stream.wait_for_request(kKeepAlive, needed_elsewhere)) return;
+      const bool last = served + 1 == kMaxKeepAliveRequests || svr_sock_ == INVALID_SOCKET;
+      if (!serve_one(stream, last)) break;
+      if (svr_sock_ == INVALID_SOCKET) break;
+    }
+    stream.close_gently();
+  }
+
+  // False: the connection must be closed.
+  bool serve_one(ConnectionStream& stream, bool last) {
+    ++in_flight_;
+    Exchange exchange;
+    exchange.request_id = make_random_hex();
+    current_exchange = &exchange;
+    stream.begin_request();
+    bool closed = false;
+    const bool sound = process_request(stream, last, closed, [&](httplib::Request& request) {
+      stream.begin_body();
+      prepare(request, exchange);
+    });
+    current_exchange = nullptr;
+    --in_flight_;
+    if (exchange.status != 0) record(exchange, stream.bytes_written());
+    return sound && !closed && !last && !exchange.close;
+  }
+
+  void record(const Exchange& exchange, std::uint64_t bytes) {
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - exchange.start).count();
+    const std::string status = std::to_string(exchange.status);
+    const std::string_view route = exchange.route.empty() ? "none" : exchange.route;
+    const std::string_view method = exchange.method.empty() ? "none" : exchange.method;
+    metrics_.count("symcell_http_requests_total",
+                   {{"route", route}, {"method", method}, {"status", status}});
+    metrics_.observe("symcell_http_request_duration_seconds", seconds, {{"route", route}});
+    // Probes would drown everything else.
+    const bool probe = route == "/healthz" || route == "/readyz" || route == "/metrics";
+    logger_.log(probe ? LogLevel::kDebug : LogLevel::kInfo, "http_request",
+                {{"request_id", exchange.request_id},
+                 {"method", method},
+                 {"path", exchange.path},
+                 {"status", std::int64_t{exchange.status}},
+                 {"bytes", static_cast<std::int64_t>(bytes)},
+                 {"seconds", seconds}});
+  }
+
+  HttpSettings settings_;
+  const Router& router_;
+  Metrics& metrics_;
+  Logger& logger_;
+  std::atomic<std::size_t>& in_flight_;
+  int stop_descriptor_;
+  BoundedTaskQueue* queue_ = nullptr;  // owned by httplib while it listens
+};
+
+HttpServer::HttpServer(const HttpSettings& settings,
+                       const Router& router,
+                       Metrics& metrics,
+                       Logger& logger)
+    : impl_(std::make_unique<Impl>(settings, router, metrics, logger, in_flight_)) {
+}
+
+HttpServer::~HttpServer() = default;
+
+int HttpServer::bind() {
+  return impl_->bind();
+}
+
+void HttpServer::run() {
+  impl_->listen_after_bind();
+}
+
+void HttpServer::stop() {
+  impl_->stop_accepting();
+  impl_->wake_idle_connections();
+}
+
+}  // namespace symcell::server

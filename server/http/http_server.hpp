@@ -1,0 +1,47 @@
+// httplib's server with what it lacks: bounded queues, limits on slow clients, prompt stop, request
+// ids, access log, and connections that are closed without loss of the answer.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "server/base/log.hpp"
+#include "server/base/metrics.hpp"
+#include "server/http/router.hpp"
+
+namespace symcell::server {
+
+struct HttpSettings {
+  std::string host = "127.0.0.1";
+  int port = 8080;  // 0: any free one
+  std::size_t threads = 16;
+  std::size_t max_body_bytes = 0;
+  std::string cors_origin;  // empty: no CORS headers
+};
+
+class HttpServer {
+ public:
+  // `router`, `metrics` and `logger` must outlive the server.
+  HttpServer(const HttpSettings& settings, const Router& router, Metrics& metrics, Logger& logger);
+  // Requires: run() has returned or was never called.
+  ~HttpServer();
+
+  // Binds; returns the port.  Throws std::runtime_error if the address cannot be had.
+  int bind();
+  // Serves until stop(); then requests under way are finished first.
+  void run();
+  void stop();
+
+  // Requests being served.
+  [[nodiscard]] const std::atomic<std::size_t>& in_flight() const { return in_flight_; }
+
+ private:
+  class Impl;
+
+  std::atomic<std::size_t> in_flight_{0};
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace symcell::server

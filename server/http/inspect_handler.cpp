@@ -1,0 +1,52 @@
+// POST /v1/inspect: what detection finds, at once, within a small limit of size and time.
+#include <algorithm>
+
+#include "server/base/files.hpp"
+#include "server/http/call.hpp"
+#include "server/http/model_request.hpp"
+#include "server/http/problem_response.hpp"
+#include "server/http/router.hpp"
+#include "server/http/service_context.hpp"
+
+namespace symcell::server {
+namespace {
+
+constexpr std::size_t kMaxInspectBytes = 16UL << 20U;
+constexpr double kMaxInspectSeconds = 10;
+
+void inspect(Call& call, ServiceContext& context) {
+  if (context.jobs.stopping()) {
+    call.exchange.close = true;
+    respond_problem(call, ServiceProblem::kStopping, "the server is stopping");
+    return;
+  }
+  // An inspection works in the HTTP thread; the places keep threads and processors for others.
+  const Slots::Slot place = context.inspections.try_take();
+  if (!place) {
+    respond_problem(call, ServiceProblem::kTooManyStreams,
+                    "too many inspections at once; try again shortly");
+    return;
+  }
+  const auto request = receive_model_request(call, context.jobs.files(),
+                                             std::min(kMaxInspectBytes, context.max_body_bytes));
+  if (!request) return;
+  ExecutionContext execution;
+  execution.set_time_limit(std::min(kMaxInspectSeconds, request->options.time_limit_s));
+  const MappedFile model(request->model.path());
+  const auto document =
+      context.jobs.engine().inspect(model.bytes(), request->format, request->options, execution);
+  if (!document) {
+    respond_error(call, document.error(), "/model");
+    return;
+  }
+  call.response.set_header("Cache-Control", "no-store");
+  call.response.set_content(*document, "application/json");
+}
+
+}  // namespace
+
+void add_inspect_routes(Router& router, ServiceContext& context) {
+  router.add("POST", "/v1/inspect", [&context](Call& call) { inspect(call, context); });
+}
+
+}  // namespace symcell::server

@@ -1,0 +1,184 @@
+// POST and GET /v1/jobs, GET and DELETE /v1/jobs/{id}, POST /v1/jobs/{id}/cancel.
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "server/http/call.hpp"
+#include "server/http/header_values.hpp"
+#include "server/http/job_document.hpp"
+#include "server/http/model_request.hpp"
+#include "server/http/problem_response.hpp"
+#include "server/http/router.hpp"
+#include "server/http/service_context.hpp"
+
+namespace symcell::server {
+namespace {
+
+constexpr std::int64_t kMaxWaitSeconds = 60;
+constexpr std::int64_t kMaxListLimit = 500;
+constexpr std::size_t kMaxKeyLength = 255;
+
+void respond_job(Call& call, int status, const Job& job, ServiceContext& context) {
+  call.response.status = status;
+  call.response.set_header("Cache-Control", "no-store");
+  call.response.set_content(json_text(job_document(job, context.jobs, JobDetail::kFull)),
+                            "application/json");
+}
+
+void respond_stopping(Call& call) {
+  call.exchange.close = true;
+  respond_problem(call, ServiceProblem::kStopping,
+                  "the server is stopping and takes no new jobs; try again elsewhere or later");
+}
+
+void respond_queue_full(Call& call, const ServiceContext& context) {
+  respond_problem(call, ServiceProblem::kQueueFull,
+                  "there are " + std::to_string(context.jobs.limits().queue_limit) +
+                      " jobs waiting already; try again later");
+}
+
+bool is_usable_key(const std::string& key) {
+  return key.size() <= kMaxKeyLength &&
+         std::ranges::all_of(key, [](char c) { return c >= 0x20 && c < 0x7f; });
+}
+
+// 201 with the finished job if it ends in time, else 202.
+void respond_accepted(Call& call, Job job, ServiceContext& context) {
+  call.response.set_header("Location", job_path(job));
+  const auto wait = prefer_wait_seconds(call.header("Prefer"));
+  // No place among those who wait: a preference may be left unmet.
+  const Slots::Slot place = wait ? context.streams.try_take() : nullptr;
+  if (place) {
+    const std::int64_t seconds = std::min(*wait, kMaxWaitSeconds);
+    call.response.set_header("Preference-Applied", "wait=" + std::to_string(seconds));
+    auto waited = context.jobs.wait_finished(
+        job.id, ChangeSignal::Clock::now() + std::chrono::seconds(seconds));
+    if (waited) job = std::move(*waited);
+  }
+  respond_job(call, place && is_finished(job.state) ? 201 : 202, job, context);
+}
+
+void submit_job(Call& call, ServiceContext& context) {
+  const std::string key = call.header("Idempotency-Key");
+  if (!is_usable_key(key)) {
+    respond_problem(call, ServiceProblem::kBadRequest,
+                    "an Idempotency-Key has 1 to 255 printable ASCII characters");
+    return;
+  }
+  // Before the body is read: refusing early saves both sides the transfer. A repeated request is
+  // answered however full the queue is.
+  if (context.jobs.stopping()) return respond_stopping(call);
+  if (key.empty() && context.jobs.queue_is_full()) return respond_queue_full(call, context);
+
+  const auto request = receive_model_request(call, context.jobs.files(), context.max_body_bytes);
+  if (!request) return;
+  const SubmitOutcome outcome = context.jobs.submit(
+      {request->model.path(), request->format, request->model_name, request->options, key});
+  switch (outcome.status) {
+    case SubmitStatus::kReplayed:
+      call.response.set_header("Idempotency-Replayed", "true");
+      respond_accepted(call, outcome.job, context);
+      return;
+    case SubmitStatus::kAccepted: respond_accepted(call, outcome.job, context); return;
+    case SubmitStatus::kKeyConflict:
+      respond_problem(call, ServiceProblem::kIdempotencyConflict,
+                      "this Idempotency-Key came before with another model or other options; "
+                      "take a new key for a new request");
+      return;
+    case SubmitStatus::kQueueFull: respond_queue_full(call, context); return;
+    case SubmitStatus::kStopping: respond_stopping(call); return;
+  }
+}
+
+// False: a parameter is not acceptable, the call is answered.
+bool parse_filter(Call& call, JobFilter& filter) {
+  if (call.request.has_param("state")) {
+    filter.state = job_state_from_name(call.parameter("state"));
+    if (!filter.state) {
+      respond_problem(call, ServiceProblem::kBadRequest,
+                      "state is one of queued, running, succeeded, failed, cancelled");
+      return false;
+    }
+  }
+  if (call.request.has_param("limit")) {
+    const auto limit = parse_whole_number(call.parameter("limit"));
+    if (!limit || *limit < 1 || *limit > kMaxListLimit) {
+      respond_problem(call, ServiceProblem::kBadRequest,
+                      "limit is a whole number from 1 to " + std::to_string(kMaxListLimit));
+      return false;
+    }
+    filter.limit = static_cast<std::size_t>(*limit);
+  }
+  if (call.request.has_param("cursor")) {
+    filter.before_sequence = parse_whole_number(call.parameter("cursor"));
+    if (!filter.before_sequence) {
+      respond_problem(call, ServiceProblem::kBadRequest,
+                      "cursor is what next_cursor of the page before said");
+      return false;
+    }
+  }
+  return true;
+}
+
+void list_jobs(Call& call, ServiceContext& context) {
+  JobFilter filter;
+  if (!parse_filter(call, filter)) return;
+  const std::size_t limit = filter.limit;
+  ++filter.limit;  // one more tells whether there is another page
+  auto jobs = context.jobs.list(filter);
+  nlohmann::ordered_json document;
+  document["jobs"] = nlohmann::ordered_json::array();
+  document["next_cursor"] = nullptr;
+  if (jobs.size() > limit) {
+    jobs.resize(limit);
+    document["next_cursor"] = std::to_string(jobs.back().sequence);
+  }
+  for (const Job& job : jobs) {
+    document["jobs"].push_back(job_document(job, context.jobs, JobDetail::kSummary));
+  }
+  call.response.set_header("Cache-Control", "no-store");
+  call.response.set_content(json_text(document), "application/json");
+}
+
+void respond_unknown_job(Call& call) {
+  respond_problem(call, ServiceProblem::kNotFound, "there is no such job; it may have expired");
+}
+
+void show_job(Call& call, ServiceContext& context) {
+  const auto job = context.jobs.find(call.id);
+  if (!job) return respond_unknown_job(call);
+  respond_job(call, 200, *job, context);
+}
+
+void cancel_job(Call& call, ServiceContext& context) {
+  const auto before = context.jobs.find(call.id);
+  if (!before) return respond_unknown_job(call);
+  if (is_finished(before->state) && before->state != JobState::kCancelled) {
+    respond_problem(call, ServiceProblem::kAlreadyFinished,
+                    "the job is " + std::string(job_state_name(before->state)) +
+                        " and can no longer be cancelled");
+    return;
+  }
+  const auto job = context.jobs.cancel(call.id);
+  if (!job) return respond_unknown_job(call);
+  // A running job ends within a second; then its state is cancelled.
+  respond_job(call, is_finished(job->state) ? 200 : 202, *job, context);
+}
+
+void delete_job(Call& call, ServiceContext& context) {
+  if (!context.jobs.erase(call.id)) return respond_unknown_job(call);
+  call.response.status = 204;
+}
+
+}  // namespace
+
+void add_job_routes(Router& router, ServiceContext& context) {
+  router.add("POST", "/v1/jobs", [&context](Call& call) { submit_job(call, context); });
+  router.add("GET", "/v1/jobs", [&context](Call& call) { list_jobs(call, context); });
+  router.add("GET", "/v1/jobs/{id}", [&context](Call& call) { show_job(call, context); });
+  router.add("DELETE", "/v1/jobs/{id}", [&context](Call& call) { delete_job(call, context); });
+  router.add("POST", "/v1/jobs/{id}/cancel", [&context](Call& call) { cancel_job(call, context); });
+}
+
+}  // namespace symcell::server

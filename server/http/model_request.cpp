@@ -1,0 +1,178 @@
+#include "server/http/model_request.hpp"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "api/schema/options.hpp"
+#include "server/base/files.hpp"
+#include "server/http/call.hpp"
+#include "server/http/header_values.hpp"
+#include "server/http/json_envelope.hpp"
+#include "server/http/problem_response.hpp"
+
+namespace symcell::server {
+namespace {
+
+enum class BodyForm { kEnvelope, kForm, kRaw, kUnsupported };
+
+// What a body is taken for. curl's --data-binary says form-urlencoded unless told otherwise, and
+// plain clients say nothing at all: both mean the raw model.
+BodyForm body_form_of(const std::string& media_type) {
+  if (media_type == "application/json") return BodyForm::kEnvelope;
+  if (media_type == "multipart/form-data") return BodyForm::kForm;
+  constexpr std::array<std::string_view, 7> kRaw{"",
+                                                 "text/plain",
+                                                 "application/octet-stream",
+                                                 "application/x-www-form-urlencoded",
+                                                 "application/sla",
+                                                 "application/vnd.ms-pki.stl",
+                                                 "application/x-poly"};
+  if (std::ranges::find(kRaw, media_type) != kRaw.end() || media_type.starts_with("model/") ||
+      model_format_from_media_type(media_type)) {
+    return BodyForm::kRaw;
+  }
+  return BodyForm::kUnsupported;
+}
+
+Result<MeshOptions> parse_options_text(std::string_view text) {
+  // Options are small and flat; nothing needs to be deeper than a list of coordinates.
+  constexpr int kMaxDepth = 4;
+  bool too_deep = false;
+  const auto callback = [&](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
+    too_deep = too_deep || depth > kMaxDepth;
+    return !too_deep;
+  };
+  const auto json = nlohmann::json::parse(text, callback, false);
+  if (too_deep) return fail(ErrorCode::kBadOption, "the options are nested", {}, "/options");
+  if (json.is_discarded()) {
+    return fail(ErrorCode::kJsonSyntax, "the options are not well-formed JSON", {}, "/options");
+  }
+  if (!json.is_object()) {
+    return fail(ErrorCode::kWrongType, "the options must be a JSON object", {}, "/options");
+  }
+  return options_from_json(json);
+}
+
+// From the document, if it has options, else from the query; both at once would leave open which
+// one wins.
+Result<MeshOptions> parse_options(const Call& call, std::optional<std::string_view> document) {
+  std::vector<std::pair<std::string, std::string>> texts(call.request.params.begin(),
+                                                         call.request.params.end());
+  if (!document) return options_from_texts(texts);
+  if (!texts.empty()) {
+    return fail(ErrorCode::kBadOption,
+                "options are given in the body and in the query; use one place", {}, "/options");
+  }
+  return parse_options_text(*document);
+}
+
+std::string safe_name(const std::string& file_name) {
+  std::string name = file_name.substr(file_name.find_last_of("/\\") + 1);
+  std::erase_if(name, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  return name.substr(0, 200);
+}
+
+ModelFormat guess_of_readable(std::string_view model) {
+  const std::size_t first = model.find_first_not_of(" \t\r\n");
+  const bool json = first != std::string_view::npos && model[first] == '{';
+  return json ? ModelFormat::kPslgJson : ModelFormat::kPoly;
+}
+
+// Everything the three forms have in common once model and options are apart.
+struct Parts {
+  ArrivedFile model;
+  std::optional<ModelFormat> format;
+  std::string name;
+  std::optional<std::string> options;  // JSON text
+  std::string pointer_prefix;
+};
+
+std::optional<ModelRequest> parse_parts(Call& call, Parts parts) {
+  const auto options = parse_options(call, parts.options);
+  if (!options) {
+    respond_error(call, options.error(), "");
+    return std::nullopt;
+  }
+  const MappedFile model(parts.model.path());
+  const auto parsed = read_model(model.bytes(), parts.format);
+  if (!parsed) {
+    respond_error(call, parsed.error(), parts.pointer_prefix);
+    return std::nullopt;
+  }
+  const ModelFormat format = parts.format.value_or(guess_of_readable(model.bytes()));
+  return ModelRequest{std::move(parts.model), format, safe_name(parts.name), *options};
+}
+
+std::optional<Parts> receive_envelope(Call& call, const JobFiles& files, std::size_t max_bytes) {
+  auto body = receive_body(call, files.incoming(), max_bytes);
+  if (!body) return std::nullopt;
+  const MappedFile bytes(body->path());
+  const auto envelope = split_envelope(bytes.bytes());
+  if (!envelope) {
+    respond_error(call, envelope.error(), "");
+    return std::nullopt;
+  }
+  if (envelope->bare) {
+    return Parts{std::move(*body), ModelFormat::kPslgJson, {}, std::nullopt, ""};
+  }
+  const auto destination = files.incoming();
+  FileWriter model(destination);
+  model.write(envelope->model);
+  model.keep();
+  std::optional<std::string> options;
+  if (!envelope->options.empty()) options = std::string(envelope->options);
+  return Parts{ArrivedFile(destination), ModelFormat::kPslgJson, {}, std::move(options), "/model"};
+}
+
+std::optional<Parts> receive_parts_of_form(Call& call,
+                                           const JobFiles& files,
+                                           std::size_t max_bytes) {
+  auto form = receive_form(call, files.incoming(), max_bytes);
+  if (!form) return std::nullopt;
+  auto format = model_format_from_name(form->model_name);
+  if (!format) format = model_format_from_media_type(media_type_of(form->model_media_type));
+  return Parts{std::move(form->model), format, std::move(form->model_name),
+               std::move(form->options), "/model"};
+}
+
+std::optional<Parts> receive_raw(Call& call,
+                                 const JobFiles& files,
+                                 std::size_t max_bytes,
+                                 const std::string& media_type) {
+  auto body = receive_body(call, files.incoming(), max_bytes);
+  if (!body) return std::nullopt;
+  // text/plain may be anything: leave it to the content.
+  const auto format =
+      media_type == "text/plain" ? std::nullopt : model_format_from_media_type(media_type);
+  return Parts{std::move(*body), format, {}, std::nullopt, ""};
+}
+
+}  // namespace
+
+std::optional<ModelRequest> receive_model_request(Call& call,
+                                                  const JobFiles& files,
+                                                  std::size_t max_body_bytes) {
+  const std::string media_type = media_type_of(call.header("Content-Type"));
+  std::optional<Parts> parts;
+  switch (body_form_of(media_type)) {
+    case BodyForm::kEnvelope: parts = receive_envelope(call, files, max_body_bytes); break;
+    case BodyForm::kForm: parts = receive_parts_of_form(call, files, max_body_bytes); break;
+    case BodyForm::kRaw: parts = receive_raw(call, files, max_body_bytes, media_type); break;
+    case BodyForm::kUnsupported:
+      call.response.set_header("Accept-Post",
+                               "application/json, multipart/form-data, text/plain, model/*, "
+                               "application/octet-stream");
+      respond_problem(call, ServiceProblem::kUnsupportedMediaType,
+                      "a model comes as application/json, multipart/form-data, text/plain, "
+                      "application/octet-stream or model/*, not as " +
+                          media_type);
+      return std::nullopt;
+  }
+  if (!parts) return std::nullopt;
+  return parse_parts(call, std::move(*parts));
+}
+
+}  // namespace symcell::server

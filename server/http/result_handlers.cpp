@@ -1,0 +1,235 @@
+// GET /v1/jobs/{id}/cell, /full, /statistics, /model: streamed, never whole in memory.
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "api/formats/cell_archive.hpp"
+#include "api/formats/mesh_writer.hpp"
+#include "api/version.hpp"
+#include "server/base/files.hpp"
+#include "server/http/call.hpp"
+#include "server/http/gzip.hpp"
+#include "server/http/header_values.hpp"
+#include "server/http/problem_response.hpp"
+#include "server/http/router.hpp"
+#include "server/http/service_context.hpp"
+
+namespace symcell::server {
+namespace {
+
+// Writers come in small pieces; each chunk on the wire costs a system call.
+constexpr std::size_t kChunkBytes = 64UL * 1024;
+
+// Produces a body: writes pieces to the sink until done; false: failed or the sink stopped.
+using Producer = std::function<bool(const PieceSink&)>;
+
+// What is about to be sent.
+struct Representation {
+  std::string media_type;
+  std::string file_name;
+  std::string etag_base;  // identifies the bytes before compression
+  Producer produce;
+};
+
+class ChunkBuffer {
+ public:
+  explicit ChunkBuffer(PieceSink sink) : sink_(std::move(sink)) { buffer_.reserve(kChunkBytes); }
+
+  bool write(std::string_view piece) {
+    if (buffer_.size() + piece.size() > kChunkBytes && !flush()) return false;
+    if (piece.size() >= kChunkBytes) return sink_(piece);
+    buffer_.append(piece);
+    return true;
+  }
+
+  bool flush() {
+    if (buffer_.empty()) return true;
+    const bool taken = sink_(buffer_);
+    buffer_.clear();
+    return taken;
+  }
+
+ private:
+  PieceSink sink_;
+  std::string buffer_;
+};
+
+// Runs the producer against the client's pace: the sink's write waits while the socket is full.
+bool send(const Producer& produce, bool gzip, httplib::DataSink& data) {
+  ChunkBuffer chunks(
+      [&](std::string_view piece) { return data.write(piece.data(), piece.size()); });
+  bool sent = false;
+  if (gzip) {
+    GzipDeflater deflater([&](std::string_view piece) { return chunks.write(piece); });
+    sent =
+        produce([&](std::string_view piece) { return deflater.write(piece); }) && deflater.finish();
+  } else {
+    sent = produce([&](std::string_view piece) { return chunks.write(piece); });
+  }
+  if (!sent || !chunks.flush()) return false;
+  data.done();
+  return true;
+}
+
+void respond_representation(Call& call, Representation representation) {
+  const bool gzip = accepts_gzip(call.exchange.accept_encoding);
+  const std::string etag = "\"" + representation.etag_base + (gzip ? "-gzip\"" : "\"");
+  call.response.set_header("ETag", etag);
+  call.response.set_header("Vary", "Accept, Accept-Encoding");
+  call.response.set_header("Cache-Control", "private, no-cache");
+  if (etag_matches(call.header("If-None-Match"), etag)) {
+    call.response.status = 304;
+    return;
+  }
+  if (gzip) call.response.set_header("Content-Encoding", "gzip");
+  call.response.set_header("Content-Disposition",
+                           "attachment; filename=\"" + representation.file_name + "\"");
+  const auto provider = [produce = std::move(representation.produce), gzip](
+                            std::size_t, httplib::DataSink& data) {
+    return send(produce, gzip, data);
+  };
+  if (call.request.version == "HTTP/1.0") {
+    // No chunks there: the end of the connection is the end of the body.
+    call.exchange.close = true;
+    call.response.set_content_provider(representation.media_type, provider);
+  } else {
+    call.response.set_chunked_content_provider(representation.media_type, provider);
+  }
+}
+
+// The succeeded job of the call, or an answer.
+std::optional<Job> succeeded_job(Call& call, ServiceContext& context) {
+  auto job = context.jobs.find(call.id);
+  if (!job) {
+    respond_problem(call, ServiceProblem::kNotFound, "there is no such job; it may have expired");
+    return std::nullopt;
+  }
+  if (job->state == JobState::kSucceeded) return job;
+  const std::string state(job_state_name(job->state));
+  if (is_finished(job->state)) {
+    respond_problem(call, ServiceProblem::kNoResult, "the job is " + state + " and has no result");
+  } else {
+    call.response.set_header("Retry-After", "1");
+    respond_problem(call, ServiceProblem::kNotFinished, "the job is " + state + "; see its events");
+  }
+  return std::nullopt;
+}
+
+// By ?format=, else by Accept.
+std::optional<MeshFormat> mesh_format_of(Call& call) {
+  if (call.request.has_param("format")) {
+    const auto format = mesh_format_from_name(call.parameter("format"));
+    if (!format) {
+      respond_problem(call, ServiceProblem::kBadRequest, "format is one of vtu, json, msh, svg");
+    }
+    return format;
+  }
+  const auto format = mesh_format_from_accept(call.header("Accept"));
+  if (!format) {
+    respond_problem(call, ServiceProblem::kNotAcceptable,
+                    "meshes come as application/vnd.vtk.vtu+xml, application/json, model/x-gmsh "
+                    "and image/svg+xml; or choose by ?format=");
+  }
+  return format;
+}
+
+std::optional<WriteOptions> write_options_of(Call& call) {
+  const std::string encoding = call.parameter("encoding");
+  if (encoding.empty() || encoding == "raw") return WriteOptions{VtuEncoding::kAppendedRaw};
+  if (encoding == "zlib") return WriteOptions{VtuEncoding::kAppendedZlib};
+  if (encoding == "ascii") return WriteOptions{VtuEncoding::kAscii};
+  respond_problem(call, ServiceProblem::kBadRequest,
+                  "encoding (of vtu) is one of raw, zlib, ascii");
+  return std::nullopt;
+}
+
+// The cell is read before the answer begins, so that a damaged archive is an error and no broken
+// download. Errors are ours: throws.
+std::shared_ptr<const SymmetryCellMesh> load_cell(const Job& job, const JobFiles& files) {
+  auto cell = read_cell_archive(MappedFile(files.cell(job.id)).bytes());
+  if (!cell) throw std::runtime_error("the archive of " + job.id + ": " + cell.error().message);
+  return std::make_shared<const SymmetryCellMesh>(std::move(*cell));
+}
+
+void send_mesh(Call& call, ServiceContext& context, MeshPart part) {
+  const auto job = succeeded_job(call, context);
+  if (!job) return;
+  const auto format = mesh_format_of(call);
+  if (!format) return;
+  const auto options = write_options_of(call);
+  if (!options) return;
+  const std::string part_name = part == MeshPart::kCell ? "cell" : "full";
+  const std::string format_name(mesh_format_name(*format));
+  const std::string encoding = *format == MeshFormat::kVtu ? call.parameter("encoding") : "";
+
+  Representation mesh;
+  mesh.media_type = mesh_format_media_type(*format);
+  mesh.file_name = part_name + "." + format_name;
+  // The bytes follow from the job, the form and the program's version.
+  mesh.etag_base =
+      job->id + "-" + part_name + "-" + format_name + encoding + "-" + std::string(version());
+  if (call.request.method == "HEAD") {
+    mesh.produce = [](const PieceSink&) { return true; };
+  } else {
+    mesh.produce = [cell = load_cell(*job, context.jobs.files()), part, format = *format,
+                    options = *options](const PieceSink& sink) {
+      return write_mesh(*cell, part, format, options, sink).has_value();
+    };
+  }
+  respond_representation(call, std::move(mesh));
+}
+
+Producer file_producer(const std::filesystem::path& path) {
+  // Mapped now: the job may be deleted while its file is on its way.
+  auto file = std::make_shared<MappedFile>(path);
+  return [file = std::move(file)](const PieceSink& sink) {
+    std::string_view rest = file->bytes();
+    while (!rest.empty()) {
+      if (!sink(rest.substr(0, kChunkBytes))) return false;
+      rest.remove_prefix(std::min(kChunkBytes, rest.size()));
+    }
+    return true;
+  };
+}
+
+bool check_accepts(Call& call, std::string_view media_type) {
+  if (accepts_media_type(call.header("Accept"), media_type)) return true;
+  respond_problem(call, ServiceProblem::kNotAcceptable,
+                  "this comes as " + std::string(media_type) + " only");
+  return false;
+}
+
+void send_statistics(Call& call, ServiceContext& context) {
+  const auto job = succeeded_job(call, context);
+  if (!job || !check_accepts(call, "application/json")) return;
+  respond_representation(call, {"application/json", "statistics.json", job->id + "-statistics",
+                                file_producer(context.jobs.files().statistics(job->id))});
+}
+
+void send_model(Call& call, ServiceContext& context) {
+  const auto job = context.jobs.find(call.id);
+  if (!job) {
+    respond_problem(call, ServiceProblem::kNotFound, "there is no such job; it may have expired");
+    return;
+  }
+  const bool poly = job->model_format == ModelFormat::kPoly;
+  const std::string media_type = poly ? "text/plain; charset=utf-8" : "application/json";
+  if (!check_accepts(call, poly ? "text/plain" : "application/json")) return;
+  respond_representation(call, {media_type, poly ? "model.poly" : "model.json", job->id + "-model",
+                                file_producer(context.jobs.files().model(job->id))});
+}
+
+}  // namespace
+
+void add_result_routes(Router& router, ServiceContext& context) {
+  router.add("GET", "/v1/jobs/{id}/cell",
+             [&context](Call& call) { send_mesh(call, context, MeshPart::kCell); });
+  router.add("GET", "/v1/jobs/{id}/full",
+             [&context](Call& call) { send_mesh(call, context, MeshPart::kFull); });
+  router.add("GET", "/v1/jobs/{id}/statistics",
+             [&context](Call& call) { send_statistics(call, context); });
+  router.add("GET", "/v1/jobs/{id}/model", [&context](Call& call) { send_model(call, context); });
+}
+
+}  // namespace symcell::server

@@ -1,0 +1,48 @@
+// From method and path to a handler, and the one wrapper around every handler.
+//
+// Routes are plain templates ("/v1/jobs/{id}/cell"): httplib's own routes are regular expressions
+// and know neither 405 nor names for metrics, so it gets a single catch-all.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/base/log.hpp"
+#include "server/base/metrics.hpp"
+
+namespace symcell::server {
+
+struct Call;
+using RouteHandler = std::function<void(Call&)>;
+
+class Router {
+ public:
+  // Both must outlive the router.
+  Router(Metrics& metrics, Logger& logger) : metrics_(metrics), logger_(logger) {}
+
+  // `path`: segments between slashes, one of which may be "{id}". GET serves HEAD too.
+  void add(std::string method, std::string path, RouteHandler handler);
+
+  // Answers the call whatever happens: unknown paths with 404, other methods with 405 and Allow,
+  // exceptions with 500 (507 if the disk is full).
+  void dispatch(Call& call) const;
+
+ private:
+  struct Route {
+    std::string method;
+    std::string path;
+    std::vector<std::string> segments;
+    RouteHandler handler;
+  };
+
+  void run(const Route& route, Call& call) const;
+  void refuse_method(Call& call, const std::string& allowed) const;
+
+  Metrics& metrics_;
+  Logger& logger_;
+  std::vector<Route> routes_;
+};
+
+}  // namespace symcell::server

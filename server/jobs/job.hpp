@@ -1,0 +1,54 @@
+// A job: what was asked, what became of it, and the state machine between the two.
+//
+//   queued --start--> running --succeed--> succeeded
+//     |                 |  \---fail------> failed
+//     |                 |---cancel-------> cancelled
+//     |                 \---requeue------> queued       (server stopped or died meanwhile)
+//     |---cancel--> cancelled
+//     \---fail----> failed                              (its model file is gone)
+// Finished states (succeeded, failed, cancelled) are final.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "api/formats/model_reader.hpp"
+
+namespace symcell::server {
+
+enum class JobState : std::uint8_t { kQueued, kRunning, kSucceeded, kFailed, kCancelled };
+enum class JobEvent : std::uint8_t { kStart, kSucceed, kFail, kCancel, kRequeue };
+
+inline constexpr JobState kAllJobStates[] = {JobState::kQueued, JobState::kRunning,
+                                             JobState::kSucceeded, JobState::kFailed,
+                                             JobState::kCancelled};
+
+[[nodiscard]] std::string_view job_state_name(JobState state);
+[[nodiscard]] std::optional<JobState> job_state_from_name(std::string_view name);
+[[nodiscard]] bool is_finished(JobState state);
+
+// nullopt: the event is not allowed in this state.
+[[nodiscard]] std::optional<JobState> next_state(JobState state, JobEvent event);
+
+struct Job {
+  std::string id;
+  std::int64_t sequence = 0;  // order of acceptance, given by the store
+  JobState state = JobState::kQueued;
+  std::int64_t created_ms = 0;
+  std::optional<std::int64_t> started_ms;
+  std::optional<std::int64_t> finished_ms;
+
+  ModelFormat model_format = ModelFormat::kPslgJson;
+  std::string model_name;    // of the uploaded file, may be empty
+  std::string options_json;  // every option that is set, limits of the server applied
+
+  std::string error_code;  // name of the code; empty unless failed
+  std::string error_json;  // problem document; empty unless failed
+  std::int64_t model_bytes = 0;
+  std::int64_t result_bytes = 0;
+  std::int32_t crashes = 0;  // how often the server died while it ran this job
+};
+
+}  // namespace symcell::server

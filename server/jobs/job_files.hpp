@@ -1,0 +1,57 @@
+// Which file of a job lies where under the data directory.
+//
+//   jobs.sqlite                  the rows
+//   lock                         held while a server uses the directory
+//   incoming/<random>            request bodies that are still arriving; emptied at start
+//   jobs/<id>/model              as uploaded
+//   jobs/<id>/cell               the compact symmetry cell (api/formats/cell_archive.hpp)
+//   jobs/<id>/statistics.json
+//   jobs/<id>/*.part             results that are being written
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace symcell::server {
+
+class JobFiles {
+ public:
+  // Creates the folders, readable by their owner only.
+  explicit JobFiles(std::filesystem::path data_directory);
+
+  [[nodiscard]] std::filesystem::path database() const { return root_ / "jobs.sqlite"; }
+  [[nodiscard]] std::filesystem::path lock() const { return root_ / "lock"; }
+  // Bodies that a dead server was receiving. Requires: no other server uses the directory.
+  void empty_incoming() const;
+  // A fresh name.
+  [[nodiscard]] std::filesystem::path incoming() const;
+  [[nodiscard]] std::filesystem::path model(std::string_view id) const { return job(id) / "model"; }
+  [[nodiscard]] std::filesystem::path cell(std::string_view id) const { return job(id) / "cell"; }
+  [[nodiscard]] std::filesystem::path statistics(std::string_view id) const {
+    return job(id) / "statistics.json";
+  }
+  [[nodiscard]] static std::filesystem::path partial(std::filesystem::path file) {
+    return file += ".part";
+  }
+
+  // Moves an arrived body to its job; durable when it returns.
+  void adopt_model(const std::filesystem::path& arrived, std::string_view id) const;
+  // Removes everything of a job; never throws: what cannot be removed now goes at the next start.
+  void remove(std::string_view id) const noexcept;
+  // Calls `keep(id)` for every job folder and removes those it denies.
+  template <class Keep>
+  void sweep(const Keep& keep) const {
+    for (const auto& entry : std::filesystem::directory_iterator(root_ / "jobs")) {
+      const std::string id = entry.path().filename().string();
+      if (!keep(id)) remove(id);
+    }
+  }
+
+ private:
+  [[nodiscard]] std::filesystem::path job(std::string_view id) const { return root_ / "jobs" / id; }
+
+  std::filesystem::path root_;
+};
+
+}  // namespace symcell::server

@@ -1,0 +1,227 @@
+#include "server/jobs/job_runner.hpp"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <exception>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+
+#include "api/problem.hpp"
+#include "api/schema/options.hpp"
+#include "core/base/assert.hpp"
+#include "server/base/clock.hpp"
+#include "server/base/files.hpp"
+
+namespace symcell::server {
+namespace {
+
+// How long a cancelled engine may take before stop() gives it up; it promises one second.
+constexpr std::chrono::seconds kCancelPatience{5};
+
+std::int64_t file_bytes(const std::filesystem::path& file) {
+  return static_cast<std::int64_t>(std::filesystem::file_size(file));
+}
+
+}  // namespace
+
+JobRunner::JobRunner(RunnerParts parts, std::size_t workers, std::size_t queue_limit)
+    : parts_(parts), workers_(workers), queue_limit_(queue_limit), pool_(workers) {
+}
+
+JobRunner::~JobRunner() {
+  pool_.join();
+}
+
+bool JobRunner::try_reserve() {
+  const std::lock_guard lock(mutex_);
+  if (stopping_ || waiting_.size() + reserved_ >= queue_limit_) return false;
+  ++reserved_;
+  return true;
+}
+
+void JobRunner::release_reservation() {
+  const std::lock_guard lock(mutex_);
+  SYMCELL_ASSERT(reserved_ > 0);
+  --reserved_;
+}
+
+void JobRunner::enqueue_reserved(std::string id) {
+  {
+    const std::lock_guard lock(mutex_);
+    SYMCELL_ASSERT(reserved_ > 0);
+    --reserved_;
+    waiting_.push_back(std::move(id));
+  }
+  post();
+}
+
+void JobRunner::enqueue_recovered(std::string id) {
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(id));
+  }
+  post();
+}
+
+// One task a job: the pool's own queue is no longer than ours.
+void JobRunner::post() {
+  boost::asio::post(pool_, [this] { run_next(); });
+}
+
+JobRunner::CancelResult JobRunner::cancel(std::string_view id) {
+  const std::lock_guard lock(mutex_);
+  if (const auto running = running_.find(id); running != running_.end()) {
+    running->second->context.cancel();
+    return CancelResult::kStopping;
+  }
+  const auto waiting = std::ranges::find(waiting_, id);
+  if (waiting == waiting_.end()) return CancelResult::kNotHere;
+  waiting_.erase(waiting);
+  return CancelResult::kDequeued;
+}
+
+std::optional<Progress> JobRunner::progress(std::string_view id) const {
+  const std::lock_guard lock(mutex_);
+  const auto running = running_.find(id);
+  if (running == running_.end()) return std::nullopt;
+  return running->second->context.progress();
+}
+
+std::size_t JobRunner::queued() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_.size();
+}
+
+std::size_t JobRunner::running() const {
+  const std::lock_guard lock(mutex_);
+  return running_.size();
+}
+
+bool JobRunner::stop(std::chrono::milliseconds grace) {
+  std::unique_lock lock(mutex_);
+  stopping_ = true;
+  const auto none_runs = [this] { return running_.empty(); };
+  if (!idle_.wait_for(lock, grace, none_runs)) {
+    for (const auto& [id, running] : running_) {
+      running->requeue = true;
+      running->context.cancel();
+    }
+    if (!idle_.wait_for(lock, kCancelPatience, none_runs)) return false;
+  }
+  lock.unlock();
+  pool_.join();
+  return true;
+}
+
+void JobRunner::run_next() {
+  std::string id;
+  auto running = std::make_shared<Running>();
+  {
+    const std::lock_guard lock(mutex_);
+    // Fewer jobs than tasks: some were cancelled while they waited.
+    if (stopping_ || waiting_.empty()) return;
+    id = std::move(waiting_.front());
+    waiting_.pop_front();
+    running_.emplace(id, running);
+  }
+  try {
+    execute(id, *running);
+  } catch (const std::exception& exception) {
+    // The store or the disk failed. The row stays as it is; the next start requeues the job.
+    parts_.logger.error("job_bookkeeping_failed", {{"job", id}, {"what", exception.what()}});
+    parts_.metrics.count("symcell_internal_errors_total", {{"where", "job"}});
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    running_.erase(id);
+    // Under the lock: stop() may destroy nothing before the notification is over.
+    if (running_.empty()) idle_.notify_all();
+  }
+  remove_files_if_deleted(id);
+  parts_.changes.notify();
+}
+
+// Whoever deletes a job leaves its files to the worker that still holds it; by now nobody does.
+void JobRunner::remove_files_if_deleted(const std::string& id) {
+  try {
+    if (!parts_.store.find(id)) parts_.files.remove(id);
+  } catch (const std::exception& exception) {
+    parts_.logger.error("job_bookkeeping_failed", {{"job", id}, {"what", exception.what()}});
+  }
+}
+
+void JobRunner::execute(const std::string& id, Running& running) {
+  const auto job = parts_.store.apply(id, JobEvent::kStart, {.time_ms = now_ms()});
+  if (!job) return;  // deleted between the queue and here
+  parts_.logger.info("job_started", {{"job", id}});
+  parts_.changes.notify();
+
+  Result<void> result;
+  try {
+    result = run_engine(*job, running);
+  } catch (const std::bad_alloc&) {
+    result = fail(ErrorCode::kMemoryLimit,
+                  "not enough memory for this mesh; relax max_area, max_edge or min_angle");
+  } catch (const std::exception& exception) {
+    parts_.logger.error("job_threw", {{"job", id}, {"what", exception.what()}});
+    parts_.metrics.count("symcell_internal_errors_total", {{"where", "job"}});
+    result = fail(ErrorCode::kInternal, "internal error; the server's log tells more under " + id);
+  }
+  settle(*job, running, result);
+}
+
+Result<void> JobRunner::run_engine(const Job& job, Running& running) {
+  const auto options = options_from_json(nlohmann::json::parse(job.options_json));
+  if (!options) return tl::unexpected(options.error());
+  EngineJob work;
+  work.model = parts_.files.model(job.id);
+  work.model_format = job.model_format;
+  work.options = *options;
+  work.cell = JobFiles::partial(parts_.files.cell(job.id));
+  work.statistics = JobFiles::partial(parts_.files.statistics(job.id));
+  // Left by a run that died.
+  std::filesystem::remove(work.cell);
+  std::filesystem::remove(work.statistics);
+
+  running.context.set_time_limit(options->time_limit_s);
+  running.context.set_max_elements(options->max_elements);
+  if (const auto ready = running.context.check(); !ready) return ready;
+  if (const auto done = parts_.engine.run(work, running.context); !done) return done;
+  rename_durably(work.statistics, parts_.files.statistics(job.id));
+  rename_durably(work.cell, parts_.files.cell(job.id));
+  return {};
+}
+
+void JobRunner::settle(const Job& job, Running& running, const Result<void>& result) {
+  JobChange change{.time_ms = now_ms()};
+  JobEvent event = JobEvent::kSucceed;
+  if (result) {
+    change.result_bytes =
+        file_bytes(parts_.files.cell(job.id)) + file_bytes(parts_.files.statistics(job.id));
+  } else if (result.error().code == ErrorCode::kCancelled) {
+    event = running.requeue ? JobEvent::kRequeue : JobEvent::kCancel;
+  } else {
+    event = JobEvent::kFail;
+    change.error_code = error_code_name(result.error().code);
+    change.error_json = problem_document(result.error(), "/v1/jobs/" + job.id, "/model")
+                            .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  }
+  const auto settled = parts_.store.apply(job.id, event, change);
+  if (!settled) return;  // deleted while it ran
+  const double seconds = static_cast<double>(change.time_ms - job.started_ms.value_or(0)) / 1000;
+  const std::string_view state = job_state_name(settled->state);
+  parts_.logger.info(event == JobEvent::kRequeue ? "job_requeued" : "job_finished",
+                     {{"job", job.id},
+                      {"state", state},
+                      {"seconds", seconds},
+                      {"error", std::string_view(change.error_code)}});
+  if (event == JobEvent::kRequeue) return;
+  parts_.metrics.observe("symcell_job_duration_seconds", seconds, {{"state", state}});
+  if (!change.error_code.empty()) {
+    parts_.metrics.count("symcell_job_errors_total", {{"code", change.error_code}});
+  }
+}
+
+}  // namespace symcell::server

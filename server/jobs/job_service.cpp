@@ -1,0 +1,223 @@
+#include "server/jobs/job_service.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "api/problem.hpp"
+#include "api/schema/options.hpp"
+#include "server/base/clock.hpp"
+#include "server/base/files.hpp"
+#include "server/base/identifiers.hpp"
+#include "server/jobs/sqlite_job_store.hpp"
+
+namespace symcell::server {
+namespace {
+
+// A job during which the server died this often is taken for the cause.
+constexpr std::int32_t kMaxCrashes = 3;
+
+// Two servers on one directory would run every job twice. The lock dies with its process.
+int lock_directory(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (descriptor < 0) throw std::runtime_error("cannot create " + file.string());
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    ::close(descriptor);
+    throw std::runtime_error("another server uses " + file.parent_path().string() +
+                             "; choose another --data-dir");
+  }
+  return descriptor;
+}
+
+std::string digest_of(const Submission& submission, const std::string& options_json) {
+  Sha256 digest;
+  digest.append(options_json);
+  digest.append(submission.model_format == ModelFormat::kPoly ? "\npoly\n" : "\npslg\n");
+  const MappedFile model(submission.model);
+  digest.append(model.bytes());
+  return digest.finish();
+}
+
+JobChange failure(const Job& job, const std::string& message) {
+  const Error error{ErrorCode::kInternal, message, {}, {}};
+  return {.time_ms = now_ms(),
+          .error_code = std::string(error_code_name(error.code)),
+          .error_json = problem_document(error, "/v1/jobs/" + job.id, "/model").dump()};
+}
+
+}  // namespace
+
+JobService::JobService(const std::filesystem::path& data_directory,
+                       const JobLimits& limits,
+                       JobEngine& engine,
+                       Metrics& metrics,
+                       Logger& logger)
+    : limits_(limits),
+      engine_(engine),
+      metrics_(metrics),
+      logger_(logger),
+      files_(data_directory),
+      lock_descriptor_(lock_directory(files_.lock())) {
+  files_.empty_incoming();
+  store_ = std::make_unique<SqliteJobStore>(files_.database());
+  runner_ = std::make_unique<JobRunner>(
+      RunnerParts{engine_, *store_, files_, changes_, metrics_, logger_}, limits_.workers,
+      limits_.queue_limit);
+}
+
+JobService::~JobService() {
+  // Without a stop before, jobs that run are cancelled and queued for the next start.
+  if (!stopping_) static_cast<void>(finish_stop(std::chrono::milliseconds(0)));
+  retention_.reset();
+  runner_.reset();
+  store_.reset();
+  ::close(lock_descriptor_);
+}
+
+void JobService::start() {
+  files_.sweep([this](const std::string& id) { return store_->find(id).has_value(); });
+  for (const Job& job : store_->unfinished()) recover(job);
+  retention_ = std::make_unique<RetentionKeeper>(limits_.retention, *store_, files_, logger_);
+}
+
+void JobService::recover(const Job& job) {
+  if (!std::filesystem::exists(files_.model(job.id))) {
+    store_->apply(job.id, JobEvent::kFail, failure(job, "the model's file is lost"));
+    return;
+  }
+  if (job.state == JobState::kRunning) {
+    if (job.crashes + 1 >= kMaxCrashes) {
+      logger_.error("job_given_up", {{"job", job.id}, {"crashes", std::int64_t{kMaxCrashes}}});
+      store_->apply(job.id, JobEvent::kFail,
+                    failure(job, "the server died repeatedly while it ran this job"));
+      return;
+    }
+    store_->apply(job.id, JobEvent::kRequeue, {.time_ms = now_ms(), .crashed = true});
+  }
+  logger_.info("job_recovered", {{"job", job.id}});
+  runner_->enqueue_recovered(job.id);
+}
+
+void JobService::begin_stop() {
+  stopping_ = true;
+  changes_.notify();
+}
+
+bool JobService::finish_stop(std::chrono::milliseconds grace) {
+  begin_stop();
+  return runner_->stop(grace);
+}
+
+MeshOptions JobService::capped(MeshOptions options) const {
+  options.time_limit_s = std::min(options.time_limit_s, limits_.time_limit_s);
+  options.max_elements = std::min(options.max_elements, limits_.max_elements);
+  return options;
+}
+
+bool JobService::queue_is_full() const {
+  return runner_->queued() >= limits_.queue_limit;
+}
+
+SubmitOutcome JobService::submit(const Submission& submission) {
+  const std::string options_json = options_to_json(capped(submission.options)).dump();
+  std::optional<IdempotencyKey> key;
+  if (!submission.idempotency_key.empty()) {
+    key = {submission.idempotency_key, digest_of(submission, options_json)};
+    // Before the queue is asked: a repeated request gets its job however full the queue is.
+    if (auto known = store_->find_key(*key)) {
+      const bool same = known->result == InsertResult::kReplayed;
+      return {same ? SubmitStatus::kReplayed : SubmitStatus::kKeyConflict, std::move(known->job)};
+    }
+  }
+  if (stopping_) return {SubmitStatus::kStopping, {}};
+  if (!runner_->try_reserve()) {
+    return {stopping_ ? SubmitStatus::kStopping : SubmitStatus::kQueueFull, {}};
+  }
+  try {
+    SubmitOutcome outcome = store_reserved(submission, key, options_json);
+    if (outcome.status == SubmitStatus::kAccepted) {
+      runner_->enqueue_reserved(outcome.job.id);
+      if (retention_) retention_->poke();
+    } else {
+      runner_->release_reservation();
+    }
+    return outcome;
+  } catch (...) {
+    runner_->release_reservation();
+    throw;
+  }
+}
+
+SubmitOutcome JobService::store_reserved(const Submission& submission,
+                                         const std::optional<IdempotencyKey>& key,
+                                         const std::string& options_json) {
+  Job job;
+  job.created_ms = now_ms();
+  job.id = make_job_id(job.created_ms);
+  job.model_format = submission.model_format;
+  job.model_name = submission.model_name;
+  job.options_json = options_json;
+  job.model_bytes = static_cast<std::int64_t>(std::filesystem::file_size(submission.model));
+  try {
+    files_.adopt_model(submission.model, job.id);
+    InsertOutcome inserted = store_->insert(job, key);
+    if (inserted.result != InsertResult::kInserted) files_.remove(job.id);
+    switch (inserted.result) {
+      case InsertResult::kInserted: return {SubmitStatus::kAccepted, std::move(inserted.job)};
+      case InsertResult::kReplayed: return {SubmitStatus::kReplayed, std::move(inserted.job)};
+      case InsertResult::kConflict: return {SubmitStatus::kKeyConflict, {}};
+    }
+  } catch (...) {
+    files_.remove(job.id);
+    throw;
+  }
+  return {SubmitStatus::kKeyConflict, {}};
+}
+
+std::optional<Job> JobService::find(std::string_view id) {
+  if (!is_job_id(id)) return std::nullopt;
+  return store_->find(id);
+}
+
+std::optional<Job> JobService::wait_finished(std::string_view id,
+                                             ChangeSignal::Clock::time_point deadline) {
+  while (true) {
+    const std::uint64_t seen = changes_.version();
+    auto job = find(id);
+    if (!job || is_finished(job->state) || stopping_) return job;
+    if (ChangeSignal::Clock::now() >= deadline) return job;
+    changes_.wait_beyond(seen, deadline);
+  }
+}
+
+std::optional<Progress> JobService::progress(std::string_view id) const {
+  return runner_->progress(id);
+}
+
+std::optional<Job> JobService::cancel(std::string_view id) {
+  auto job = find(id);
+  if (!job || is_finished(job->state)) return job;
+  if (runner_->cancel(id) == JobRunner::CancelResult::kDequeued) {
+    store_->apply(id, JobEvent::kCancel, {.time_ms = now_ms()});
+    logger_.info("job_cancelled_in_queue", {{"job", id}});
+    changes_.notify();
+  }
+  return find(id);
+}
+
+bool JobService::erase(std::string_view id) {
+  if (!is_job_id(id)) return false;
+  runner_->cancel(id);
+  if (!store_->erase(id)) return false;
+  // A worker that still holds the job removes the files when it lets go and finds the row gone.
+  if (!runner_->progress(id)) files_.remove(id);
+  logger_.info("job_deleted", {{"job", id}});
+  changes_.notify();
+  return true;
+}
+
+}  // namespace symcell::server

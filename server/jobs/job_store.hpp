@@ -1,0 +1,81 @@
+// Where jobs are kept: an interface, so that an embedded and a shared database can stand behind it.
+//
+// Every call is atomic and, once it returns, durable. Any thread may call. A failing database
+// throws std::runtime_error (see server/base/files.hpp for why).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/jobs/job.hpp"
+
+namespace symcell::server {
+
+// A caller's promise that requests with the same key are the same request.
+struct IdempotencyKey {
+  std::string key;
+  std::string digest;  // of the request
+};
+
+enum class InsertResult : std::uint8_t {
+  kInserted,
+  kReplayed,  // the key is known with this digest: the job in the outcome is the earlier one
+  kConflict,  // the key is known with another digest
+};
+
+struct InsertOutcome {
+  InsertResult result = InsertResult::kInserted;
+  Job job;
+};
+
+struct JobFilter {
+  std::optional<JobState> state;
+  std::size_t limit = 50;
+  std::optional<std::int64_t> before_sequence;  // only jobs accepted earlier
+};
+
+// What a transition writes besides the state.
+struct JobChange {
+  std::int64_t time_ms = 0;
+  std::string error_code = {};
+  std::string error_json = {};
+  std::int64_t result_bytes = 0;
+  bool crashed = false;  // requeue: because the server died
+};
+
+struct StoreTotals {
+  std::array<std::int64_t, 5> by_state{};  // indexed by JobState
+  std::int64_t bytes = 0;                  // models and results
+};
+
+class JobStore {
+ public:
+  virtual ~JobStore() = default;
+
+  // `job.sequence` is given by the store.
+  virtual InsertOutcome insert(const Job& job, const std::optional<IdempotencyKey>& key) = 0;
+  // kReplayed or kConflict; nullopt if the key is unknown.
+  [[nodiscard]] virtual std::optional<InsertOutcome> find_key(const IdempotencyKey& key) = 0;
+  [[nodiscard]] virtual std::optional<Job> find(std::string_view id) = 0;
+  // Newest first.
+  [[nodiscard]] virtual std::vector<Job> list(const JobFilter& filter) = 0;
+  // Oldest first.
+  [[nodiscard]] virtual std::vector<Job> unfinished() = 0;
+  // Finished jobs, oldest first.
+  [[nodiscard]] virtual std::vector<Job> oldest_finished(std::size_t limit) = 0;
+  // The job after the event; nullopt if it is gone or the event is not allowed in its state.
+  virtual std::optional<Job> apply(std::string_view id,
+                                   JobEvent event,
+                                   const JobChange& change) = 0;
+  // Forgets the job and its idempotency key; false if it is unknown.
+  virtual bool erase(std::string_view id) = 0;
+  [[nodiscard]] virtual StoreTotals totals() = 0;
+  // Throws if the database cannot be read.
+  virtual void check_health() = 0;
+};
+
+}  // namespace symcell::server

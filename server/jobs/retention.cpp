@@ -1,0 +1,90 @@
+#include "server/jobs/retention.hpp"
+
+#include <chrono>
+#include <exception>
+
+#include "server/base/clock.hpp"
+
+namespace symcell::server {
+namespace {
+
+constexpr std::size_t kBatch = 100;
+constexpr std::chrono::minutes kInterval{1};
+
+std::int64_t finished_count(const StoreTotals& totals) {
+  std::int64_t count = 0;
+  for (const JobState state : kAllJobStates) {
+    if (is_finished(state)) count += totals.by_state[static_cast<std::size_t>(state)];
+  }
+  return count;
+}
+
+}  // namespace
+
+std::size_t apply_retention(const RetentionRules& rules,
+                            JobStore& store,
+                            const JobFiles& files,
+                            std::int64_t time_ms) {
+  std::size_t removed = 0;
+  StoreTotals totals = store.totals();
+  std::int64_t finished = finished_count(totals);
+  while (true) {
+    const auto oldest = store.oldest_finished(kBatch);
+    if (oldest.empty()) return removed;
+    for (const Job& job : oldest) {
+      const std::int64_t age_ms = time_ms - job.finished_ms.value_or(time_ms);
+      const bool too_old = rules.max_age_s > 0 && age_ms > rules.max_age_s * 1000;
+      const bool too_many = rules.max_jobs > 0 && finished > rules.max_jobs;
+      const bool too_large = rules.max_bytes > 0 && totals.bytes > rules.max_bytes;
+      if (!too_old && !too_many && !too_large) return removed;
+      // The row first: files without a row are swept, a row without files would be an error.
+      store.erase(job.id);
+      files.remove(job.id);
+      totals.bytes -= job.model_bytes + job.result_bytes;
+      --finished;
+      ++removed;
+    }
+  }
+}
+
+RetentionKeeper::RetentionKeeper(RetentionRules rules,
+                                 JobStore& store,
+                                 const JobFiles& files,
+                                 Logger& logger)
+    : rules_(rules),
+      store_(store),
+      files_(files),
+      logger_(logger),
+      thread_([this](const std::stop_token& stop) { work(stop); }) {
+}
+
+RetentionKeeper::~RetentionKeeper() = default;
+
+void RetentionKeeper::poke() {
+  {
+    const std::lock_guard lock(mutex_);
+    poked_ = true;
+  }
+  wake_.notify_one();
+}
+
+void RetentionKeeper::work(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, stop, kInterval, [this] { return poked_; });
+      poked_ = false;
+    }
+    if (stop.stop_requested()) return;
+    try {
+      const std::size_t removed = apply_retention(rules_, store_, files_, now_ms());
+      if (removed > 0) {
+        logger_.info("jobs_expired", {{"count", static_cast<std::int64_t>(removed)}});
+      }
+    } catch (const std::exception& exception) {
+      logger_.error("retention_failed", {{"what", exception.what()}});
+    }
+  }
+}
+
+}  // namespace symcell::server

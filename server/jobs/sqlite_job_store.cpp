@@ -1,0 +1,282 @@
+#include "server/jobs/sqlite_job_store.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <array>
+#include <limits>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+
+namespace symcell::server {
+namespace {
+
+// One entry a schema version; entry i takes version i to version i + 1. Never edited, only added
+// to.
+constexpr std::array kMigrations = {
+    R"sql(
+CREATE TABLE jobs (
+  sequence INTEGER PRIMARY KEY AUTOINCREMENT,
+  id TEXT NOT NULL UNIQUE,
+  state TEXT NOT NULL,
+  created_ms INTEGER NOT NULL,
+  started_ms INTEGER,
+  finished_ms INTEGER,
+  model_format TEXT NOT NULL,
+  model_name TEXT NOT NULL,
+  options_json TEXT NOT NULL,
+  error_code TEXT NOT NULL DEFAULT '',
+  error_json TEXT NOT NULL DEFAULT '',
+  model_bytes INTEGER NOT NULL,
+  result_bytes INTEGER NOT NULL DEFAULT 0,
+  crashes INTEGER NOT NULL DEFAULT 0
+) STRICT;
+CREATE INDEX jobs_by_state ON jobs (state, sequence);
+CREATE TABLE idempotency_keys (
+  key TEXT PRIMARY KEY,
+  digest TEXT NOT NULL,
+  job_id TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE
+) STRICT;
+CREATE INDEX idempotency_keys_by_job ON idempotency_keys (job_id);
+)sql",
+};
+
+constexpr const char* kColumns =
+    "sequence, id, state, created_ms, started_ms, finished_ms, model_format, model_name, "
+    "options_json, error_code, error_json, model_bytes, result_bytes, crashes";
+constexpr const char* kFinished = "('succeeded', 'failed', 'cancelled')";
+
+std::string format_name(ModelFormat format) {
+  return format == ModelFormat::kPoly ? "poly" : "pslg_json";
+}
+
+ModelFormat format_from_name(const std::string& name) {
+  if (name == "poly") return ModelFormat::kPoly;
+  if (name == "pslg_json") return ModelFormat::kPslgJson;
+  throw std::runtime_error("the job database holds an unknown model format: " + name);
+}
+
+std::optional<std::int64_t> optional_time(const SQLite::Column& column) {
+  if (column.isNull()) return std::nullopt;
+  return column.getInt64();
+}
+
+Job read_job(SQLite::Statement& row) {
+  Job job;
+  job.sequence = row.getColumn(0).getInt64();
+  job.id = row.getColumn(1).getString();
+  const auto state = job_state_from_name(row.getColumn(2).getString());
+  if (!state) throw std::runtime_error("the job database holds an unknown state");
+  job.state = *state;
+  job.created_ms = row.getColumn(3).getInt64();
+  job.started_ms = optional_time(row.getColumn(4));
+  job.finished_ms = optional_time(row.getColumn(5));
+  job.model_format = format_from_name(row.getColumn(6).getString());
+  job.model_name = row.getColumn(7).getString();
+  job.options_json = row.getColumn(8).getString();
+  job.error_code = row.getColumn(9).getString();
+  job.error_json = row.getColumn(10).getString();
+  job.model_bytes = row.getColumn(11).getInt64();
+  job.result_bytes = row.getColumn(12).getInt64();
+  job.crashes = row.getColumn(13).getInt();
+  return job;
+}
+
+std::vector<Job> read_jobs(SQLite::Statement& query) {
+  std::vector<Job> jobs;
+  while (query.executeStep()) jobs.push_back(read_job(query));
+  return jobs;
+}
+
+void migrate(SQLite::Database& database) {
+  const int version = database.execAndGet("PRAGMA user_version").getInt();
+  const int newest = static_cast<int>(kMigrations.size());
+  if (version > newest) {
+    throw std::runtime_error("the job database has version " + std::to_string(version) +
+                             ", this program knows up to " + std::to_string(newest) +
+                             ": use a newer program or another data directory");
+  }
+  for (int step = version; step < newest; ++step) {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    database.exec(kMigrations[static_cast<std::size_t>(step)]);
+    database.exec("PRAGMA user_version = " + std::to_string(step + 1));
+    transaction.commit();
+  }
+}
+
+}  // namespace
+
+struct SqliteJobStore::Impl {
+  explicit Impl(const std::filesystem::path& file)
+      : database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
+    database.setBusyTimeout(5000);
+    database.exec("PRAGMA journal_mode = WAL");
+    // FULL: a commit is on the disk when it returns; an accepted job is never lost.
+    database.exec("PRAGMA synchronous = FULL");
+    database.exec("PRAGMA foreign_keys = ON");
+    migrate(database);
+  }
+
+  // Guards `database`: one connection serves all threads, one statement at a time.
+  std::mutex mutex;
+  SQLite::Database database;
+
+  std::optional<Job> find_locked(std::string_view id) {
+    SQLite::Statement query(database,
+                            std::string("SELECT ") + kColumns + " FROM jobs WHERE id = ?");
+    query.bind(1, std::string(id));
+    if (!query.executeStep()) return std::nullopt;
+    return read_job(query);
+  }
+
+  std::optional<InsertOutcome> known_key_locked(const IdempotencyKey& key) {
+    SQLite::Statement query(database, "SELECT digest, job_id FROM idempotency_keys WHERE key = ?");
+    query.bind(1, key.key);
+    if (!query.executeStep()) return std::nullopt;
+    const bool same = query.getColumn(0).getString() == key.digest;
+    const auto job = find_locked(query.getColumn(1).getString());
+    if (!job) throw std::runtime_error("an idempotency key without its job");
+    return InsertOutcome{same ? InsertResult::kReplayed : InsertResult::kConflict, *job};
+  }
+};
+
+SqliteJobStore::SqliteJobStore(const std::filesystem::path& file)
+    : impl_(std::make_unique<Impl>(file)) {
+}
+
+SqliteJobStore::~SqliteJobStore() = default;
+
+InsertOutcome SqliteJobStore::insert(const Job& job, const std::optional<IdempotencyKey>& key) {
+  const std::lock_guard lock(impl_->mutex);
+  SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
+  if (key) {
+    if (auto known = impl_->known_key_locked(*key)) return *known;
+  }
+  SQLite::Statement insert(impl_->database,
+                           "INSERT INTO jobs (id, state, created_ms, model_format, model_name, "
+                           "options_json, model_bytes) VALUES (?, ?, ?, ?, ?, ?, ?)");
+  insert.bind(1, job.id);
+  insert.bind(2, std::string(job_state_name(job.state)));
+  insert.bind(3, job.created_ms);
+  insert.bind(4, format_name(job.model_format));
+  insert.bind(5, job.model_name);
+  insert.bind(6, job.options_json);
+  insert.bind(7, job.model_bytes);
+  insert.exec();
+  Job stored = job;
+  stored.sequence = impl_->database.getLastInsertRowid();
+  if (key) {
+    SQLite::Statement remember(
+        impl_->database, "INSERT INTO idempotency_keys (key, digest, job_id) VALUES (?, ?, ?)");
+    remember.bind(1, key->key);
+    remember.bind(2, key->digest);
+    remember.bind(3, job.id);
+    remember.exec();
+  }
+  transaction.commit();
+  return {InsertResult::kInserted, stored};
+}
+
+std::optional<InsertOutcome> SqliteJobStore::find_key(const IdempotencyKey& key) {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->known_key_locked(key);
+}
+
+std::optional<Job> SqliteJobStore::find(std::string_view id) {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->find_locked(id);
+}
+
+std::vector<Job> SqliteJobStore::list(const JobFilter& filter) {
+  const std::lock_guard lock(impl_->mutex);
+  std::string sql = std::string("SELECT ") + kColumns + " FROM jobs WHERE sequence < ?";
+  if (filter.state) sql += " AND state = ?";
+  sql += " ORDER BY sequence DESC LIMIT " + std::to_string(filter.limit);
+  SQLite::Statement query(impl_->database, sql);
+  query.bind(1, filter.before_sequence.value_or(std::numeric_limits<std::int64_t>::max()));
+  if (filter.state) query.bind(2, std::string(job_state_name(*filter.state)));
+  return read_jobs(query);
+}
+
+std::vector<Job> SqliteJobStore::unfinished() {
+  const std::lock_guard lock(impl_->mutex);
+  SQLite::Statement query(impl_->database,
+                          std::string("SELECT ") + kColumns +
+                              " FROM jobs WHERE state IN ('queued', 'running') ORDER BY sequence");
+  return read_jobs(query);
+}
+
+std::vector<Job> SqliteJobStore::oldest_finished(std::size_t limit) {
+  const std::lock_guard lock(impl_->mutex);
+  SQLite::Statement query(impl_->database, std::string("SELECT ") + kColumns +
+                                               " FROM jobs WHERE state IN " + kFinished +
+                                               " ORDER BY finished_ms, sequence LIMIT " +
+                                               std::to_string(limit));
+  return read_jobs(query);
+}
+
+std::optional<Job> SqliteJobStore::apply(std::string_view id,
+                                         JobEvent event,
+                                         const JobChange& change) {
+  const std::lock_guard lock(impl_->mutex);
+  SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
+  auto job = impl_->find_locked(id);
+  if (!job) return std::nullopt;
+  const auto next = next_state(job->state, event);
+  if (!next) return std::nullopt;
+  job->state = *next;
+  if (event == JobEvent::kStart) job->started_ms = change.time_ms;
+  if (event == JobEvent::kRequeue) {
+    job->started_ms.reset();
+    job->crashes += change.crashed ? 1 : 0;
+  }
+  if (is_finished(*next)) job->finished_ms = change.time_ms;
+  job->error_code = change.error_code;
+  job->error_json = change.error_json;
+  job->result_bytes = change.result_bytes;
+
+  SQLite::Statement update(impl_->database,
+                           "UPDATE jobs SET state = ?, started_ms = ?, finished_ms = ?, "
+                           "error_code = ?, error_json = ?, result_bytes = ?, crashes = ? "
+                           "WHERE id = ?");
+  update.bind(1, std::string(job_state_name(job->state)));
+  if (job->started_ms) update.bind(2, *job->started_ms);
+  if (job->finished_ms) update.bind(3, *job->finished_ms);
+  update.bind(4, job->error_code);
+  update.bind(5, job->error_json);
+  update.bind(6, job->result_bytes);
+  update.bind(7, job->crashes);
+  update.bind(8, job->id);
+  update.exec();
+  transaction.commit();
+  return job;
+}
+
+bool SqliteJobStore::erase(std::string_view id) {
+  const std::lock_guard lock(impl_->mutex);
+  SQLite::Statement erase(impl_->database, "DELETE FROM jobs WHERE id = ?");
+  erase.bind(1, std::string(id));
+  return erase.exec() > 0;
+}
+
+StoreTotals SqliteJobStore::totals() {
+  const std::lock_guard lock(impl_->mutex);
+  StoreTotals totals;
+  SQLite::Statement query(impl_->database,
+                          "SELECT state, COUNT(*), SUM(model_bytes + result_bytes) FROM jobs "
+                          "GROUP BY state");
+  while (query.executeStep()) {
+    if (const auto state = job_state_from_name(query.getColumn(0).getString())) {
+      totals.by_state[static_cast<std::size_t>(*state)] = query.getColumn(1).getInt64();
+    }
+    totals.bytes += query.getColumn(2).getInt64();
+  }
+  return totals;
+}
+
+void SqliteJobStore::check_health() {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->database.execAndGet("SELECT COUNT(*) FROM (SELECT 1 FROM jobs LIMIT 1)");
+}
+
+}  // namespace symcell::server
