@@ -8,8 +8,8 @@
 namespace symcell {
 namespace {
 
-constexpr std::size_t kMaxSamples = 4000;
-constexpr std::int64_t kQueriesPerFold = 400'000;
+constexpr std::size_t kMaxSamples = 2000;
+constexpr std::int64_t kQueriesPerFold = 50'000;
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);

@@ -1,5 +1,5 @@
 // The last check of a symmetrised PSLG: all copies lifted to floating point still make a planar
-// graph with the faces that were meant.
+// graph with the faces that were meant, and each face that needs a seed has one inside.
 #pragma once
 
 #include "core/base/execution_context.hpp"
@@ -8,13 +8,14 @@
 
 namespace symcell {
 
-// All copies of all vertices, segments and seeds, relative to the centre; vertex (orbit, k) has
-// index orbit * fold + k, but the centre, if a vertex, is the last one.
+// All copies of all vertices, segments and seeds, relative to the centre; copy k of segment s is
+// segment s * fold + k.
 [[nodiscard]] Pslg lift_pslg(const SymmetricPslg& symmetric);
 
+// Checks the lifted copies exactly. Keeps one seed a face: of the input's where one lies in its
+// face still, else a new one, for vertices may have moved past a seed near them.
+// Requires: closed.pslg.holes and regions are the input's, relative to the centre.
 // Errors: kNotSymmetric, kCancelled, kTimeLimit.  Cost: O(N log N).
-[[nodiscard]] Result<void> check_lifted(const SymmetricPslg& symmetric,
-                                        const ClosedOrbits& closed,
-                                        ExecutionContext& context);
+[[nodiscard]] Result<void> check_and_seed(ClosedOrbits& closed, ExecutionContext& context);
 
 }  // namespace symcell

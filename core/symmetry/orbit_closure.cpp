@@ -32,6 +32,7 @@ struct EdgeCopy {
   std::int32_t marker = 0;
   std::int32_t left = 0;
   std::int32_t right = 0;
+  ClosedOrbits::Sides labels;
   std::int32_t segment = 0;
 
   [[nodiscard]] auto orbit() const { return std::tie(a, b, turn); }
@@ -348,6 +349,7 @@ class Closure {
     copy.segment = edge.segment;
     copy.left = edge.left;
     copy.right = edge.right;
+    copy.labels = {edge.left_label, edge.right_label};
     const std::int32_t turn = rotations_.subtract(to.exponent, from.exponent);
     const bool reversed = is_centre(from.orbit) ||
                           (!is_centre(to.orbit) && (to.orbit < from.orbit ||
@@ -355,6 +357,7 @@ class Closure {
     if (reversed) {
       std::swap(from, to);
       std::swap(copy.left, copy.right);
+      std::swap(copy.labels.left, copy.labels.right);
     }
     copy.a = from.orbit;
     copy.b = to.orbit;
@@ -453,6 +456,7 @@ class Closure {
       pslg.segment_markers.push_back(copies_[begin + k].marker);
     }
     pslg.segments.push_back(segment);
+    for (std::size_t k = 0; k < at(fold()); ++k) result_.sides.push_back(copies_[begin + k].labels);
   }
 
   const PreparedPslg& prepared_;

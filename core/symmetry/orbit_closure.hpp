@@ -23,6 +23,12 @@ struct ClosureRequest {
 
 struct ClosedOrbits {
   SymmetricPslg pslg;
+  // Labels of the faces beside copy k of segment s, seen from a to b, at s * fold + k.
+  struct Sides {
+    std::int32_t left = kNotMeshed;
+    std::int32_t right = kNotMeshed;
+  };
+  std::vector<Sides> sides;
   Point2 center_shift;             // where the vertices would rather have the centre
   std::int32_t worst_vertex = -1;  // point of the prepared PSLG that was moved most
 };

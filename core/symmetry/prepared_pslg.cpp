@@ -11,6 +11,11 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
+std::int32_t label_of(const Subdomain& face) {
+  if (!face.meshed) return kNotMeshed;
+  return face.region < 0 ? kNoRegion : face.region;
+}
+
 // Class of each face.
 std::vector<std::int32_t> classify(const Pslg& pslg,
                                    const Subdomains& subdomains,
@@ -71,7 +76,10 @@ PreparedPslg prepare_pslg(const Pslg& pslg, const Subdomains& subdomains, bool i
     const std::int32_t right = classes[at(map.face[2 * p + 1])];
     if (left == 0 && right == 0) continue;
     const std::int32_t marker = pslg.segments[at(piece.segment)].marker;
-    result.edges.push_back({piece.a, piece.b, marker, left, right, piece.segment});
+    result.edges.push_back({piece.a, piece.b, marker, left, right,
+                            label_of(subdomains.left_of(static_cast<std::int32_t>(2 * p))),
+                            label_of(subdomains.left_of(static_cast<std::int32_t>(2 * p + 1))),
+                            piece.segment});
     used[at(piece.a)] = used[at(piece.b)] = 1;
   }
   for (std::size_t v = 0; v < used.size(); ++v) {

@@ -10,12 +10,17 @@
 
 namespace symcell {
 
+inline constexpr std::int32_t kNotMeshed = -2;
+inline constexpr std::int32_t kNoRegion = -1;
+
 struct PreparedEdge {
   std::int32_t a = 0;
   std::int32_t b = 0;
   std::int32_t marker = 0;
   std::int32_t left = 0;  // class of the face left of a -> b; 0: not meshed
   std::int32_t right = 0;
+  std::int32_t left_label = 0;  // kNotMeshed, kNoRegion or the index of the face's region seed
+  std::int32_t right_label = 0;
   std::int32_t segment = 0;  // in the input
 };
 

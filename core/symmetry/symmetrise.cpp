@@ -146,7 +146,7 @@ class Symmetriser {
     result.diameter = prepared_.diameter;
     result.center_detected = !options_.center;
     copy_seeds(result);
-    if (auto ok = check_lifted(result, *closed, context_); !ok) return tl::unexpected(ok.error());
+    if (auto ok = check_and_seed(*closed, context_); !ok) return tl::unexpected(ok.error());
     return std::move(result);
   }
 
