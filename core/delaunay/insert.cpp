@@ -135,6 +135,57 @@ void DelaunayEditor::compute_edge_cavity(HalfEdge h, Point2 x, Cavity& cavity) {
   if (cavity.simple) check_outside(cavity);
 }
 
+std::int32_t DelaunayEditor::collect_region(const std::vector<CavityTriangle>& region,
+                                            Cavity& cavity) {
+  start(cavity);
+  const std::uint32_t member = epoch_;
+  for (const CavityTriangle& c : region) {
+    Triangle& tri = mesh_.triangle(c.t);
+    if (tri.stamp == member) return -1;  // listed twice: at two exponents
+    tri.stamp = member;
+    tri.scratch = c.e;
+  }
+  const std::uint32_t visited = epoch_ = mesh_.new_epoch();
+  const auto enter = [&](TriangleId t, std::int32_t e) {
+    mesh_.triangle(t).stamp = visited;
+    cavity.triangles.push_back({t, e});
+  };
+  enter(region.front().t, region.front().e);
+  for (std::uint32_t j = 3; j-- > 0;) walk_.push_back({region.front().t, region.front().e, j});
+  while (!walk_.empty()) {
+    const Walk w = walk_.back();
+    walk_.pop_back();
+    const Triangle& tri = mesh_.triangle(w.t);
+    const HalfEdge g = tri.nb[w.j];
+    if (g != kNoHalfEdge && tri.seg[w.j] == kNoSubsegment) {
+      const TriangleId u = triangle_of(g);
+      const std::int32_t e = mesh_.add(w.e, tri.off[w.j]);
+      const Triangle& other = mesh_.triangle(u);
+      if ((other.stamp == visited || other.stamp == member) && other.scratch == e) {
+        if (other.stamp == visited) continue;
+        enter(u, e);
+        const std::uint32_t i = local_of(g);
+        walk_.push_back({u, e, prev3(i)});
+        walk_.push_back({u, e, next3(i)});
+        continue;
+      }
+    }
+    add_side(3 * w.t + w.j, w.e, cavity);
+  }
+  cavity.right_edges = cavity.edges.size();
+  cavity.right_triangles = cavity.triangles.size();
+  for (const CavityEdge& side : cavity.edges) {
+    if (side.mate == kNoHalfEdge || side.seg != kNoSubsegment) continue;
+    const std::uint32_t stamp = mesh_.triangle(triangle_of(side.mate)).stamp;
+    if (stamp == visited || stamp == member) return -1;
+  }
+  // By Euler's formula a disc with I vertices inside has 2 - 2I sides more than triangles.
+  const std::size_t doubled = cavity.triangles.size() + 2 - cavity.edges.size();
+  if (cavity.edges.size() > cavity.triangles.size() + 2 || doubled % 2 != 0) return -1;
+  cavity.simple = true;
+  return static_cast<std::int32_t>(doubled / 2);
+}
+
 bool DelaunayEditor::star_is_positive(Point2 x, const Cavity& cavity) const {
   for (const CavityEdge& side : cavity.edges) {
     Sign s;

@@ -57,6 +57,12 @@ class DelaunayEditor {
   void compute_cavity(TriangleId t, Point2 x, Cavity& cavity);
   void compute_edge_cavity(HalfEdge h, Point2 x, Cavity& cavity);
 
+  // The sides of a region given as its triangles (at exponents, in one frame), counter-clockwise.
+  // The region ends at subsegments: it is the part connected to its first triangle. Returns the
+  // number of vertices inside it, -1 if it meets a copy of itself or is no disc.
+  [[nodiscard]] std::int32_t collect_region(const std::vector<CavityTriangle>& region,
+                                            Cavity& cavity);
+
   // Insert x after a dry run. Returns the vertex, -1 if x cannot be placed (coincides with a vertex
   // or degenerates a triangle within rounding; nothing is changed then). `kind` as for add_vertex.
   // On success `created()` lists the triangles that are new or changed, without repeats that matter.

@@ -1,0 +1,266 @@
+#include "core/cells/extract_cell.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <queue>
+
+#include "core/tds/star.hpp"
+
+namespace symcell {
+namespace {
+
+constexpr std::int32_t kUnset = -1;
+
+// Which end of the ring a vertex belongs to.
+enum End : std::uint8_t { kNone = 0, kInner = 1, kOuter = 2 };
+
+class CellCutter {
+ public:
+  explicit CellCutter(const QuotientTriangulation& mesh)
+      : mesh_(mesh),
+        component_(mesh.triangle_slots(), kUnset),
+        end_(mesh.vertex_slots(), kNone),
+        is_cut_(3 * mesh.triangle_slots(), 0) {
+    cut_.exponent.assign(mesh.triangle_slots(), kUnset);
+  }
+
+  Result<CellCut> run() {
+    find_components();
+    if (mesh_.fold() > 1) {
+      mark_ends();
+      for (const TriangleId seed : seeds_) cut_component(seed);
+    }
+    for (const TriangleId seed : seeds_) {
+      if (auto ok = unroll(seed); !ok) return tl::unexpected<Error>(ok.error());
+    }
+    if (mesh_.fold() > 1) gather_pieces();
+    return std::move(cut_);
+  }
+
+ private:
+  template <class Visit>
+  void flood(TriangleId seed, const Visit& visit) {
+    stack_.assign(1, seed);
+    while (!stack_.empty()) {
+      const TriangleId t = stack_.back();
+      stack_.pop_back();
+      for (std::uint32_t j = 0; j < 3; ++j) {
+        const HalfEdge g = mesh_.triangle(t).nb[j];
+        if (g != kNoHalfEdge && visit(3 * t + j, g)) stack_.push_back(triangle_of(g));
+      }
+    }
+  }
+
+  void find_components() {
+    for (TriangleId seed = 0; seed < mesh_.triangle_slots(); ++seed) {
+      if (!mesh_.alive(seed) || component_[seed] != kUnset) continue;
+      const auto id = static_cast<std::int32_t>(seeds_.size());
+      seeds_.push_back(seed);
+      component_[seed] = id;
+      flood(seed, [&](HalfEdge, HalfEdge g) {
+        if (component_[triangle_of(g)] != kUnset) return false;
+        component_[triangle_of(g)] = id;
+        return true;
+      });
+    }
+  }
+
+  // Boundary loops that wind about the centre, domain on the left: counter-clockwise ones are outer.
+  void mark_ends() {
+    std::vector<std::uint8_t> seen(3 * mesh_.triangle_slots(), 0);
+    std::vector<VertexId> loop;
+    for (HalfEdge h = 0; h < seen.size(); ++h) {
+      if (!mesh_.alive(triangle_of(h)) || seen[h] != 0 ||
+          mesh_.triangle(triangle_of(h)).nb[local_of(h)] != kNoHalfEdge) {
+        continue;
+      }
+      double winding = 0;
+      loop.clear();
+      for (HalfEdge at = h; seen[at] == 0; at = next_on_boundary(at)) {
+        seen[at] = 1;
+        const Triangle& t = mesh_.triangle(triangle_of(at));
+        const std::uint32_t j = local_of(at);
+        const Point2 a = mesh_.corner_point(t, next3(j)), b = mesh_.corner_point(t, prev3(j));
+        winding += std::atan2(cross(a, b), dot(a, b));
+        loop.push_back(t.v[next3(j)]);
+      }
+      // A loop winds by a multiple of 2 pi / n.
+      const double turns = winding * static_cast<double>(mesh_.fold()) / (2 * std::numbers::pi);
+      if (std::abs(turns) < 0.5) continue;
+      for (const VertexId v : loop) end_[idx(v)] |= turns > 0 ? kOuter : kInner;
+    }
+    if (mesh_.centre() >= 0) end_[idx(mesh_.centre())] |= kInner;
+  }
+
+  // The boundary half-edge that starts where this one ends.
+  [[nodiscard]] HalfEdge next_on_boundary(HalfEdge h) const {
+    StarItem item{triangle_of(h), prev3(local_of(h)), 0};
+    while (rotate_cw(mesh_, item)) {
+    }
+    return 3 * item.t + prev3(item.i);
+  }
+
+  [[nodiscard]] static std::size_t idx(VertexId v) { return static_cast<std::size_t>(v); }
+
+  // Shortest path of edges from the inner to the outer end: fewest edges, then shortest.
+  void cut_component(TriangleId seed) {
+    struct Entry {
+      std::int32_t hops;
+      double length;
+      VertexId v;
+      bool operator<(const Entry& o) const {
+        if (hops != o.hops) return hops > o.hops;
+        if (length != o.length) return length > o.length;
+        return v > o.v;
+      }
+    };
+    const std::int32_t id = component_[seed];
+    std::priority_queue<Entry> queue;
+    if (distance_.empty()) distance_.assign(mesh_.vertex_slots(), {});
+    for (TriangleId t = 0; t < mesh_.triangle_slots(); ++t) {
+      if (component_[t] != id) continue;
+      for (const VertexId v : mesh_.triangle(t).v) {
+        if ((end_[idx(v)] & kInner) != 0 && distance_[idx(v)].hops == kUnset) {
+          distance_[idx(v)].hops = 0;
+          queue.push({0, 0, v});
+        }
+      }
+    }
+    while (!queue.empty()) {
+      const Entry at = queue.top();
+      queue.pop();
+      Reach& here = distance_[idx(at.v)];
+      if (here.done) continue;
+      here.done = true;
+      if ((end_[idx(at.v)] & kOuter) != 0) {
+        trace(at.v);
+        return;
+      }
+      StarItem item = star_item(mesh_, mesh_.corner_of(at.v));
+      to_star_begin(mesh_, item);
+      const StarItem begin = item;
+      // `leaves`: h starts at this vertex, so its triangle is on the left of the way out. An edge of
+      // the domain's boundary costs nothing: no symmetry edge lies there.
+      const auto relax = [&](HalfEdge h, const Corner& to, bool leaves) {
+        Reach& there = distance_[idx(to.v)];
+        if (there.done) return;
+        const bool open = mesh_.triangle(triangle_of(h)).nb[local_of(h)] == kNoHalfEdge;
+        const std::int32_t hops = at.hops + (open ? 0 : 1);
+        const double len =
+            at.length +
+            (open ? 0 : distance(mesh_.point(at.v), mesh_.lift(to.v, to.k)));
+        if (there.hops == kUnset || hops < there.hops ||
+            (hops == there.hops && len < there.length)) {
+          there = {hops, len, h, at.v, leaves, false};
+          queue.push({hops, len, to.v});
+        }
+      };
+      for (;;) {
+        relax(3 * item.t + prev3(item.i), star_corner(mesh_, item, 1), true);
+        const StarItem last = item;
+        if (!rotate_ccw(mesh_, item)) {
+          relax(3 * last.t + next3(last.i), star_corner(mesh_, last, 2), false);
+          break;
+        }
+        if (item.t == begin.t && item.i == begin.i) break;
+      }
+    }
+  }
+
+  // Marks the path that ends at v. On the left of the way out, counter-clockwise about the centre,
+  // is the side of the lower bound.
+  void trace(VertexId v) {
+    while (distance_[idx(v)].via != kNoHalfEdge) {
+      const Reach& reach = distance_[idx(v)];
+      const HalfEdge g = mesh_.triangle(triangle_of(reach.via)).nb[local_of(reach.via)];
+      if (g != kNoHalfEdge) {
+        is_cut_[reach.via] = is_cut_[g] = 1;
+        cut_.lower.push_back(reach.leaves ? reach.via : g);
+      }
+      v = reach.from;
+    }
+  }
+
+  // Gives every triangle of the piece the exponent that makes it fit its neighbours.
+  Result<void> unroll(TriangleId seed) {
+    cut_.exponent[seed] = 0;
+    bool fits = true;
+    flood(seed, [&](HalfEdge h, HalfEdge g) {
+      if (is_cut_[h] != 0) return false;
+      const Triangle& t = mesh_.triangle(triangle_of(h));
+      const std::int32_t e = mesh_.add(cut_.exponent[triangle_of(h)], t.off[local_of(h)]);
+      std::int32_t& there = cut_.exponent[triangle_of(g)];
+      if (there == kUnset) {
+        there = e;
+        return true;
+      }
+      fits = fits && there == e;
+      return false;
+    });
+    if (!fits) {
+      return fail(ErrorCode::kInternal, "the cut leaves a piece that winds about the centre");
+    }
+    return {};
+  }
+
+  // Pieces may be turned one by one: bring them next to the first, the largest angle apart at last.
+  void gather_pieces() {
+    std::vector<Point2> sums(seeds_.size());
+    std::vector<double> areas(seeds_.size(), 0);
+    for (TriangleId t = 0; t < mesh_.triangle_slots(); ++t) {
+      if (!mesh_.alive(t)) continue;
+      const Triangle& tri = mesh_.triangle(t);
+      const Point2 a = mesh_.corner_point(tri, 0), b = mesh_.corner_point(tri, 1),
+                   c = mesh_.corner_point(tri, 2);
+      const double area = cross(b - a, c - a);
+      const auto id = static_cast<std::size_t>(component_[t]);
+      sums[id] = sums[id] + mesh_.rotations().rotate(area * (a + b + c), cut_.exponent[t]);
+      areas[id] += area;
+    }
+    const auto largest = static_cast<std::size_t>(
+        std::max_element(areas.begin(), areas.end()) - areas.begin());
+    std::vector<std::int32_t> turn(seeds_.size(), 0);
+    const double sector = 2 * std::numbers::pi / static_cast<double>(mesh_.fold());
+    for (std::size_t id = 0; id < seeds_.size(); ++id) {
+      const Point2 r = id == largest ? Point2{1, 0} : sums[largest];
+      const double angle = std::atan2(cross(r, sums[id]), dot(r, sums[id]));
+      // The first piece is brought to the sector that begins at the x axis.
+      const double steps = id == largest ? std::floor(angle / sector) : std::round(angle / sector);
+      turn[id] = mesh_.rotations().reduce(-static_cast<std::int64_t>(steps));
+    }
+    for (std::size_t id = 0; id < seeds_.size(); ++id) {
+      if (id != largest) turn[id] = mesh_.add(turn[id], turn[largest]);
+    }
+    for (TriangleId t = 0; t < mesh_.triangle_slots(); ++t) {
+      if (!mesh_.alive(t)) continue;
+      cut_.exponent[t] =
+          mesh_.add(cut_.exponent[t], turn[static_cast<std::size_t>(component_[t])]);
+    }
+  }
+
+  // How a vertex is reached: over half-edge `via` from vertex `from`.
+  struct Reach {
+    std::int32_t hops = kUnset;
+    double length = 0;
+    HalfEdge via = kNoHalfEdge;
+    VertexId from = -1;
+    bool leaves = false;
+    bool done = false;
+  };
+
+  const QuotientTriangulation& mesh_;
+  std::vector<std::int32_t> component_;
+  std::vector<std::uint8_t> end_;
+  std::vector<std::uint8_t> is_cut_;
+  std::vector<Reach> distance_;
+  std::vector<TriangleId> seeds_;
+  std::vector<TriangleId> stack_;
+  CellCut cut_;
+};
+
+}  // namespace
+
+Result<CellCut> cut_cell(const QuotientTriangulation& mesh) { return CellCutter(mesh).run(); }
+
+}  // namespace symcell

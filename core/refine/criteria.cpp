@@ -1,0 +1,186 @@
+#include "core/refine/criteria.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/tds/star.hpp"
+
+namespace symcell {
+namespace {
+
+constexpr double kRadian = std::numbers::pi / 180.0;
+// Two points on shells of one acute vertex count as equally far from it within this ratio; shells
+// themselves are a factor of two apart.
+constexpr double kShellRatio = 1e-3;
+
+double angle_between(Point2 from, Point2 to) {
+  const double a = std::atan2(cross(from, to), dot(from, to));
+  return a < 0 ? a + 2 * std::numbers::pi : a;
+}
+
+}  // namespace
+
+Criteria::Criteria(const QuotientTriangulation& mesh,
+                   const std::vector<SubdomainOrbit>& subdomains,
+                   const MeshOptions& options) {
+  const double bound = options.min_angle_deg > 0 ? options.min_angle_deg + kAngleMarginDeg : 0;
+  goal_angle_ = bound * kRadian;
+  cos2_goal_ = bound > 0 ? std::cos(goal_angle_) * std::cos(goal_angle_) : 2.0;
+  cos_lens_ = std::cos(2 * goal_angle_);
+  // The square of a length just inside the bound must not round to one outside.
+  max_edge2_ = options.max_edge * options.max_edge * (1 - 1e-12);
+  has_size_bound_ = options.max_edge < kInfinity;
+  for (const SubdomainOrbit& s : subdomains) {
+    max_area_.push_back(std::min(options.max_area, s.max_area));
+    has_size_bound_ = has_size_bound_ || max_area_.back() < kInfinity;
+  }
+  centre_is_narrow_ =
+      mesh.centre() >= 0 && 360.0 / static_cast<double>(mesh.fold()) < options.min_angle_deg;
+  find_corners(mesh);
+}
+
+void Criteria::find_corners(const QuotientTriangulation& mesh) {
+  acute_.assign(mesh.vertex_slots(), 0);
+  shells_.assign(mesh.vertex_slots(), Corner{});
+  const auto edge_is_segment = [&](const StarItem& item, std::uint32_t which) {
+    const Triangle& tri = mesh.triangle(item.t);
+    return tri.seg[which == 1 ? prev3(item.i) : next3(item.i)] != kNoSubsegment;
+  };
+  for (std::size_t id = 0; id < mesh.vertex_slots(); ++id) {
+    const auto v = static_cast<VertexId>(id);
+    if (mesh.corner_of(v) == kNoHalfEdge) continue;
+    StarItem item = star_item(mesh, mesh.corner_of(v));
+    const bool open = to_star_begin(mesh, item);
+    // A star that closes is begun at a segment, if it has one.
+    const StarItem first = item;
+    if (!open) {
+      while (!edge_is_segment(item, 1)) {
+        if (!rotate_ccw(mesh, item) || (item.t == first.t && item.i == first.i)) break;
+      }
+      if (!edge_is_segment(item, 1)) continue;
+    }
+    const StarItem begin = item;
+    const Point2 p = mesh.point(v);
+    const auto direction = [&](const StarItem& at, std::uint32_t which) {
+      const Corner c = star_corner(mesh, at, which);
+      return mesh.lift(c.v, c.k) - p;
+    };
+    Point2 from = direction(item, 1);
+    for (;;) {
+      if (edge_is_segment(item, 2)) {
+        const Point2 to = direction(item, 2);
+        add_corner(mesh, v, from, to);
+        from = to;
+      }
+      if (!rotate_ccw(mesh, item) || (item.t == begin.t && item.i == begin.i)) break;
+    }
+  }
+}
+
+void Criteria::add_corner(const QuotientTriangulation& mesh, VertexId v, Point2 from, Point2 to) {
+  double angle = angle_between(from, to);
+  // Rounding may turn a full turn (a dangling segment's end) into a tiny angle.
+  constexpr double kFullTurnSlack = 1e-9;
+  if (angle < kFullTurnSlack) angle = 2 * std::numbers::pi;
+  if (angle < kShellAngleDeg * kRadian) acute_[static_cast<std::size_t>(v)] |= 1;
+  if (angle >= goal_angle_) return;
+  acute_[static_cast<std::size_t>(v)] |= 2;
+  const std::int32_t copies = v == mesh.centre() ? mesh.fold() : 1;
+  for (std::int32_t k = 0; k < copies; ++k) {
+    narrow_.push_back({v, mesh.rotations().rotate(from, k), mesh.rotations().rotate(to, k)});
+  }
+}
+
+Assessment Criteria::assess(Point2 a, Point2 b, Point2 c, std::int32_t face) const {
+  const Point2 ab = b - a, bc = c - b, ca = a - c;
+  const double e[3] = {squared_length(bc), squared_length(ca), squared_length(ab)};
+  std::uint32_t s = e[0] < e[1] ? 0 : 1;
+  if (e[2] < e[s]) s = 2;
+  const double p = e[next3(s)], q = e[prev3(s)];
+  Assessment result{Verdict::kGood, e[s], s};
+  if (has_size_bound_) {
+    const double doubled_area = cross(ab, bc);
+    if (doubled_area > 2 * max_area_[static_cast<std::size_t>(face)] || p > max_edge2_ ||
+        q > max_edge2_) {
+      result.verdict = Verdict::kSize;
+    }
+  }
+  // cos^2 of the smallest angle, which faces the shortest edge: ((p + q - s) / 2 sqrt(pq))^2.
+  const double numerator = p + q - e[s];
+  if (numerator * numerator > 4 * cos2_goal_ * p * q) result.verdict = Verdict::kAngle;
+  return result;
+}
+
+Assessment Criteria::assess(const QuotientTriangulation& mesh, const Triangle& t) const {
+  return assess(mesh.corner_point(t, 0), mesh.corner_point(t, 1), mesh.corner_point(t, 2), t.face);
+}
+
+bool Criteria::in_narrow_corner(const QuotientTriangulation& mesh,
+                                const Triangle& t,
+                                std::uint32_t i) const {
+  const VertexId v = t.v[i];
+  if (static_cast<std::size_t>(v) >= acute_.size() ||
+      (acute_[static_cast<std::size_t>(v)] & 2) == 0) {
+    return false;
+  }
+  const Point2 p = mesh.corner_point(t, i);
+  const Point2 middle = 0.5 * (mesh.corner_point(t, next3(i)) + mesh.corner_point(t, prev3(i)));
+  const std::int32_t back = v == mesh.centre() ? 0 : mesh.subtract(0, t.k[i]);
+  const Point2 d = mesh.rotations().rotate(middle - p, back);
+  const auto first = std::lower_bound(narrow_.begin(), narrow_.end(), v,
+                                      [](const NarrowCorner& c, VertexId id) { return c.v < id; });
+  for (auto it = first; it != narrow_.end() && it->v == v; ++it) {
+    if (cross(it->from, d) > 0 && cross(d, it->to) > 0) return true;
+  }
+  return false;
+}
+
+bool Criteria::is_seditious(const QuotientTriangulation& mesh,
+                            const Triangle& t,
+                            const Assessment& assessment) const {
+  const std::uint32_t i = next3(assessment.shortest), j = prev3(assessment.shortest);
+  if (mesh.kind(t.v[i]) != VertexKind::kSegment || mesh.kind(t.v[j]) != VertexKind::kSegment) {
+    return false;
+  }
+  const Corner a = shell(t.v[i]), b = shell(t.v[j]);
+  if (a.v < 0 || a.v != b.v) return false;
+  const std::int32_t ka = mesh.shift(a.v, a.k, t.k[i]), kb = mesh.shift(b.v, b.k, t.k[j]);
+  if (ka != kb || (acute_[static_cast<std::size_t>(a.v)] & 2) == 0) return false;
+  const Point2 apex = mesh.lift(a.v, ka);
+  const double ra = distance(apex, mesh.corner_point(t, i));
+  const double rb = distance(apex, mesh.corner_point(t, j));
+  return std::abs(ra - rb) <= kShellRatio * ra;
+}
+
+Exemption Criteria::exemption(const QuotientTriangulation& mesh,
+                              TriangleId id,
+                              const Assessment& assessment) const {
+  const Triangle& t = mesh.triangle(id);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    if (in_narrow_corner(mesh, t, i)) return Exemption::kSmallInputAngle;
+  }
+  if (centre_is_narrow_) {
+    for (const VertexId v : t.v) {
+      if (v == mesh.centre()) return Exemption::kFoldAngleAtCentre;
+    }
+  }
+  if (is_seditious(mesh, t, assessment)) return Exemption::kSeditious;
+  return Exemption::kNone;
+}
+
+bool Criteria::in_lens(Point2 a, Point2 b, Point2 p) const {
+  const Point2 pa = a - p, pb = b - p;
+  const double d = dot(pa, pb);
+  if (d >= 0) return false;
+  return d * d >= cos_lens_ * cos_lens_ * squared_length(pa) * squared_length(pb);
+}
+
+void Criteria::set_shell(VertexId v, Corner apex) {
+  if (static_cast<std::size_t>(v) >= shells_.size()) {
+    shells_.resize(static_cast<std::size_t>(v) + 1);
+  }
+  shells_[static_cast<std::size_t>(v)] = apex;
+}
+
+}  // namespace symcell

@@ -1,0 +1,111 @@
+// What makes a triangle bad: its smallest angle, its area, its longest edge; and what is exempt.
+//
+// The angle bound that refinement works to is kAngleMarginDeg above the one asked for, so that
+// coordinates rounded on output (an offset centre costs digits) still keep the latter.
+//
+// Exempt are only triangles whose bound the input itself forbids: those in a corner of the input
+// that is narrower than the bound, those whose shortest edge spans such a corner ("seditious",
+// [Miller-Pav-Walkington03]), and those at the centre where 360/n is below the bound.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/point.hpp"
+#include "core/initial/initial_triangulation.hpp"
+#include "core/model/mesh_options.hpp"
+#include "core/tds/quotient_triangulation.hpp"
+
+namespace symcell {
+
+inline constexpr double kAngleMarginDeg = 1e-7;
+// Segments meeting below this angle are split on concentric shells [Ruppert95 sec. 7].
+inline constexpr double kShellAngleDeg = 60.0;
+
+enum class Verdict : std::uint8_t { kGood, kAngle, kSize };
+enum class Exemption : std::uint8_t { kNone, kSmallInputAngle, kSeditious, kFoldAngleAtCentre };
+
+struct Assessment {
+  Verdict verdict = Verdict::kGood;
+  double shortest2 = 0;     // squared length of the shortest edge
+  std::uint32_t shortest = 0;  // that edge
+};
+
+class Criteria {
+ public:
+  Criteria(const QuotientTriangulation& mesh,
+           const std::vector<SubdomainOrbit>& subdomains,
+           const MeshOptions& options);
+
+  // Angle and size of a stored triangle, exemptions not looked at.
+  [[nodiscard]] Assessment assess(const QuotientTriangulation& mesh, const Triangle& t) const;
+  // Of the triangle (a, b, c), counter-clockwise, in subdomain `face`.
+  [[nodiscard]] Assessment assess(Point2 a, Point2 b, Point2 c, std::int32_t face) const;
+  // Why a triangle with kAngle is exempt, kNone if it is not.
+  [[nodiscard]] Exemption exemption(const QuotientTriangulation& mesh,
+                                    TriangleId t,
+                                    const Assessment& assessment) const;
+  // Bad and not exempt.
+  [[nodiscard]] bool is_bad(const QuotientTriangulation& mesh, TriangleId t) const {
+    const Assessment a = assess(mesh, mesh.triangle(t));
+    return a.verdict == Verdict::kSize ||
+           (a.verdict == Verdict::kAngle && exemption(mesh, t, a) == Exemption::kNone);
+  }
+
+  // Whether p sees segment ab under an angle of at least 180 degrees minus twice the bound, that
+  // is, lies in its diametral lens [Shewchuk02].
+  [[nodiscard]] bool in_lens(Point2 a, Point2 b, Point2 p) const;
+  [[nodiscard]] bool segment_too_long(Point2 a, Point2 b) const {
+    return squared_distance(a, b) > max_edge2_;
+  }
+
+  [[nodiscard]] double goal_angle() const { return goal_angle_; }  // radians
+  [[nodiscard]] double max_area(std::int32_t face) const {
+    return max_area_[static_cast<std::size_t>(face)];
+  }
+  [[nodiscard]] double max_edge2() const { return max_edge2_; }
+  [[nodiscard]] bool has_size_bound() const { return has_size_bound_; }
+
+  // Input vertices with a corner below kShellAngleDeg.
+  [[nodiscard]] bool is_acute(VertexId v) const {
+    return static_cast<std::size_t>(v) < acute_.size() && acute_[static_cast<std::size_t>(v)] != 0;
+  }
+
+  // A Steiner point put on a shell round an acute vertex: the vertex and its exponent in the frame
+  // of the point.
+  void set_shell(VertexId v, Corner apex);
+  [[nodiscard]] Corner shell(VertexId v) const {
+    return static_cast<std::size_t>(v) < shells_.size() ? shells_[static_cast<std::size_t>(v)]
+                                                         : Corner{};
+  }
+
+ private:
+  // A corner of the input below the bound: between two directions, counter-clockwise.
+  struct NarrowCorner {
+    VertexId v;
+    Point2 from;
+    Point2 to;
+  };
+
+  void find_corners(const QuotientTriangulation& mesh);
+  void add_corner(const QuotientTriangulation& mesh, VertexId v, Point2 from, Point2 to);
+  [[nodiscard]] bool in_narrow_corner(const QuotientTriangulation& mesh,
+                                      const Triangle& t,
+                                      std::uint32_t i) const;
+  [[nodiscard]] bool is_seditious(const QuotientTriangulation& mesh,
+                                  const Triangle& t,
+                                  const Assessment& assessment) const;
+
+  double goal_angle_ = 0;
+  double cos2_goal_ = 1;
+  double cos_lens_ = 1;   // cos of twice the bound
+  double max_edge2_ = 0;
+  bool has_size_bound_ = false;
+  bool centre_is_narrow_ = false;
+  std::vector<double> max_area_;              // per subdomain orbit
+  std::vector<std::uint8_t> acute_;           // per input vertex: bit 0 acute, bit 1 narrow
+  std::vector<NarrowCorner> narrow_;          // sorted by vertex
+  std::vector<Corner> shells_;                // per vertex
+};
+
+}  // namespace symcell

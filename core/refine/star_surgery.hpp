@@ -1,0 +1,67 @@
+// Operations on whole stars: moving a vertex, replacing several vertices by one, removing a vertex.
+//
+// Each looks for a position at which the whole new star keeps all bounds (feasible_region.hpp) and
+// changes nothing if there is none. Stars that meet a copy of themselves are left alone: moving one
+// vertex there would move its own link.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <vector>
+
+#include "core/delaunay/insert.hpp"
+#include "core/refine/criteria.hpp"
+#include "core/refine/feasible_region.hpp"
+
+namespace symcell {
+
+class StarSurgery {
+ public:
+  StarSurgery(DelaunayEditor& editor, const Criteria& criteria);
+
+  // Moves a Steiner point so that its whole star is good; then flips. False: not possible.
+  // editor.created() then lists what changed, the star included.
+  [[nodiscard]] bool relocate(VertexId v);
+
+  // Replaces the Steiner points `removed` (in one frame; adjacent, the first one is kept and moved)
+  // by one point with a good star. If any lies on a segment all that do must lie on one segment,
+  // next to each other, the first one among them.
+  [[nodiscard]] bool merge(std::initializer_list<Corner> removed);
+
+  // Removes a free vertex whatever the quality of what remains, keeping the mesh Delaunay.
+  // False if its star meets a copy of itself or has no valid triangulation by a fan.
+  [[nodiscard]] bool remove(VertexId v);
+
+  // Fills `out` with the star edges of a cavity, lifted.
+  void lift_edges(const std::vector<CavityEdge>& edges, std::vector<StarEdge>& out) const;
+
+  [[nodiscard]] FeasibleRegion& region() { return region_; }
+
+ private:
+  struct SegmentEnds {
+    Corner a, b;            // ends of the chain of subsegments, in the frame
+    std::vector<SubsegmentId> chain;
+  };
+
+  [[nodiscard]] bool gather_star(Corner v, std::vector<CavityTriangle>& region) const;
+  [[nodiscard]] bool gather_union(std::initializer_list<Corner> removed);
+  [[nodiscard]] bool segment_ends(std::initializer_list<Corner> removed, SegmentEnds& ends) const;
+  [[nodiscard]] bool merge_free(std::initializer_list<Corner> removed);
+  [[nodiscard]] bool merge_on_segment(std::initializer_list<Corner> removed);
+  [[nodiscard]] bool collect_sides(std::initializer_list<Corner> removed,
+                                   const SegmentEnds& ends);
+  [[nodiscard]] bool keep_if_sizes_hold(bool transaction);
+  void finish_star();
+
+  DelaunayEditor& editor_;
+  QuotientTriangulation& mesh_;
+  const Criteria& criteria_;
+  FeasibleRegion region_;
+  Cavity cavity_, side_;
+  std::vector<CavityTriangle> union_;
+  std::vector<StarEdge> star_edges_;
+  SegmentEnds ends_;
+};
+
+}  // namespace symcell

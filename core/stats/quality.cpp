@@ -1,0 +1,71 @@
+#include "core/stats/quality.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/cells/full_mesh.hpp"
+
+namespace symcell {
+namespace {
+
+constexpr double kBinEdges[kAspectBins - 1] = {1.5, 2, 2.5, 3, 4, 6, 10, 15};
+
+std::size_t aspect_bin(double aspect) {
+  return static_cast<std::size_t>(
+      std::upper_bound(std::begin(kBinEdges), std::end(kBinEdges), aspect) -
+      std::begin(kBinEdges));
+}
+
+}  // namespace
+
+void measure_cell_2(const SymmetryCellMesh& cell, Statistics& statistics) {
+  const FullMeshView full(cell);
+  Statistics::Cell& c = statistics.cell;
+  c = {};
+  c.elements = cell.element_count();
+  c.nodes = cell.nodes.size();
+  for (const std::int32_t image : cell.lower_to_higher) c.symmetry_nodes += image >= 0 ? 1 : 0;
+  c.symmetry_facets = cell.lower_facets.size() / static_cast<std::size_t>(cell.nodes_per_facet);
+  statistics.full.elements = static_cast<std::uint64_t>(full.element_count());
+  statistics.full.nodes = static_cast<std::uint64_t>(full.node_count());
+
+  double smallest = std::numbers::pi, largest = 0;
+  const auto stride = static_cast<std::size_t>(cell.nodes_per_element);
+  for (std::size_t e = 0; e < cell.element_count(); ++e) {
+    Point2 p[3];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Point3 q = full.cell_node_position(
+          static_cast<std::size_t>(cell.elements[e * stride + i]));
+      p[i] = {q.x, q.y};
+    }
+    const double doubled = cross(p[1] - p[0], p[2] - p[0]);
+    double shortest2 = squared_distance(p[0], p[1]), longest2 = shortest2, product = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Point2 u = p[(i + 1) % 3] - p[i], v = p[(i + 2) % 3] - p[i];
+      const double angle = std::atan2(cross(u, v), dot(u, v));
+      smallest = std::min(smallest, angle);
+      largest = std::max(largest, angle);
+      const double edge2 = squared_length(u);
+      shortest2 = std::min(shortest2, edge2);
+      longest2 = std::max(longest2, edge2);
+      product *= std::sqrt(edge2);
+    }
+    c.measure += 0.5 * doubled;
+    const double circumradius = product / (2 * doubled);
+    c.max_radius_edge = std::max(c.max_radius_edge, circumradius / std::sqrt(shortest2));
+    ++c.aspect_ratio_histogram[aspect_bin(longest2 / doubled)];
+  }
+  c.min_angle_deg = smallest * 180 / std::numbers::pi;
+  c.max_angle_deg = largest * 180 / std::numbers::pi;
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in kilobytes
+}
+
+}  // namespace symcell

@@ -1,0 +1,15 @@
+// Figures of a finished cell, taken from its node positions as they are written.
+#pragma once
+
+#include "core/cells/symmetry_cell_mesh.hpp"
+#include "core/stats/statistics.hpp"
+
+namespace symcell {
+
+// Fills statistics.cell and statistics.full.  Order 2: the corners count.
+void measure_cell_2(const SymmetryCellMesh& cell, Statistics& statistics);
+
+// Peak resident memory of this process in bytes, 0 where the system does not tell.
+[[nodiscard]] std::uint64_t peak_memory_bytes();
+
+}  // namespace symcell
