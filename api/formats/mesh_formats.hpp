@@ -1,0 +1,23 @@
+// The writers behind write_mesh, one a format. All stream: memory is O(cell).
+#pragma once
+
+#include "api/formats/byte_writer.hpp"
+#include "api/formats/mesh_stream.hpp"
+
+namespace symcell::internal {
+
+// JSON as the interface has it.
+void write_json_mesh(MeshStream& mesh, ByteWriter& out);
+
+// VTK XML UnstructuredGrid; types 5 and 22 (10 and 24 for solids).
+void write_vtu(MeshStream& mesh, VtuEncoding encoding, ByteWriter& out);
+
+// Gmsh 4.1 ASCII: physical names, a discrete entity a region, a boundary marker and (in the cell) a
+// bound, and $Periodic from the lower to the higher bound.
+void write_msh(MeshStream& mesh, ByteWriter& out);
+
+// A picture of a planar mesh: edges thin, model segments dark, lower bound red, higher bound blue;
+// the full mesh as rotated copies of the cell, which is picked out in colour.
+void write_svg(const MeshStream& mesh, ByteWriter& out);
+
+}  // namespace symcell::internal

@@ -1,0 +1,104 @@
+#include "api/schema/statistics_json.hpp"
+
+#include <cmath>
+
+#include "api/schema/options.hpp"
+#include "api/version.hpp"
+
+namespace symcell {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json point(const Point3& p) {
+  return Json::array({number(p.x), number(p.y), number(p.z)});
+}
+
+Json point(const Point2& p) {
+  return Json::array({number(p.x), number(p.y)});
+}
+
+Json cell_to_json(const Statistics::Cell& cell) {
+  return {{"elements", cell.elements},
+          {"nodes", cell.nodes},
+          {"symmetry_nodes", cell.symmetry_nodes},
+          {"symmetry_facets", cell.symmetry_facets},
+          {"area", number(cell.measure)},
+          {"min_angle_deg", number(cell.min_angle_deg)},
+          {"max_angle_deg", number(cell.max_angle_deg)},
+          {"max_radius_edge", number(cell.max_radius_edge)},
+          {"min_dihedral_deg", nullptr},  // of solids
+          {"max_dihedral_deg", nullptr},
+          {"aspect_ratio_histogram", cell.aspect_ratio_histogram}};
+}
+
+Json timings_to_json(const Statistics::TimingsMs& t) {
+  return {{"parse", number(t.parse)},     {"symmetry", number(t.symmetry)},
+          {"initial", number(t.initial)}, {"refine", number(t.refine)},
+          {"cell", number(t.cell)},       {"restore", number(t.restore)},
+          {"write", number(t.write)},     {"total", number(t.total)}};
+}
+
+}  // namespace
+
+Json statistics_to_json(const Statistics& statistics, const MeshOptions& options) {
+  const Statistics::Symmetry& symmetry = statistics.symmetry;
+  const Statistics::Refinement& refinement = statistics.refinement;
+  Json json;
+  json["cell"] = cell_to_json(statistics.cell);
+  json["full"] = {{"elements", statistics.full.elements}, {"nodes", statistics.full.nodes}};
+  json["symmetry"] = {
+      {"fold", symmetry.fold},
+      {"axis",
+       {{"origin", point(symmetry.axis_origin)}, {"direction", point(symmetry.axis_direction)}}},
+      {"error", number(symmetry.error_rel)},
+      {"detected", symmetry.detected}};
+  json["refinement"] = {{"steiner_points", refinement.steiner_points},
+                        {"splits", refinement.splits},
+                        {"flips", refinement.flips},
+                        {"crossings", refinement.crossings},
+                        {"relocations", refinement.relocations},
+                        {"removed", refinement.removed}};
+  json["exempt"] = Json::array();
+  for (const ExemptCount& exempt : statistics.exempt) {
+    json["exempt"].push_back({{"reason", exempt.reason}, {"elements", exempt.elements}});
+  }
+  json["timings_ms"] = timings_to_json(statistics.timings_ms);
+  json["peak_memory_bytes"] = statistics.peak_memory_bytes;
+  json["settings"] = options_to_json(options);
+  json["version"] = version();
+  return json;
+}
+
+Json inspection_to_json(const PslgInspection& inspection) {
+  Json json;
+  json["type"] = "pslg";
+  json["dimension"] = 2;
+  json["fold"] = inspection.fold;
+  json["axis"] = {{"origin", {number(inspection.center.x), number(inspection.center.y), 0.0}},
+                  {"direction", {0.0, 0.0, 1.0}}};
+  json["symmetry_error"] = number(inspection.symmetry_error_rel);
+  json["watertight"] = nullptr;  // of solids
+  json["area"] = number(inspection.area);
+  json["diameter"] = number(inspection.diameter);
+  json["bounding_box"] = {{"min", point(inspection.bbox_min)}, {"max", point(inspection.bbox_max)}};
+  json["vertices"] = inspection.vertices;
+  json["segments"] = inspection.segments;
+  json["holes"] = inspection.holes;
+  json["regions"] = inspection.regions;
+  json["components"] = inspection.components;
+  json["min_input_angle_deg"] = number(inspection.min_input_angle_deg);
+  json["folds"] = Json::array();
+  for (const FoldCandidate& rung : inspection.folds) {
+    json["folds"].push_back(
+        {{"fold", rung.fold}, {"error", number(rung.error_rel)}, {"accepted", rung.accepted}});
+  }
+  json["version"] = version();
+  return json;
+}
+
+}  // namespace symcell

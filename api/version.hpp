@@ -1,0 +1,10 @@
+// The program's version, as `symcell --version` and the statistics tell it.
+#pragma once
+
+#include <string_view>
+
+namespace symcell {
+
+[[nodiscard]] std::string_view version();
+
+}  // namespace symcell
