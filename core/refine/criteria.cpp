@@ -42,7 +42,6 @@ Criteria::Criteria(const QuotientTriangulation& mesh,
 
 void Criteria::find_corners(const QuotientTriangulation& mesh) {
   acute_.assign(mesh.vertex_slots(), 0);
-  shells_.assign(mesh.vertex_slots(), Corner{});
   const auto edge_is_segment = [&](const StarItem& item, std::uint32_t which) {
     const Triangle& tri = mesh.triangle(item.t);
     return tri.seg[which == 1 ? prev3(item.i) : next3(item.i)] != kNoSubsegment;
@@ -120,10 +119,7 @@ bool Criteria::in_narrow_corner(const QuotientTriangulation& mesh,
                                 const Triangle& t,
                                 std::uint32_t i) const {
   const VertexId v = t.v[i];
-  if (static_cast<std::size_t>(v) >= acute_.size() ||
-      (acute_[static_cast<std::size_t>(v)] & 2) == 0) {
-    return false;
-  }
+  if (!is_narrow(v)) return false;
   const Point2 p = mesh.corner_point(t, i);
   const Point2 middle = 0.5 * (mesh.corner_point(t, next3(i)) + mesh.corner_point(t, prev3(i)));
   const std::int32_t back = v == mesh.centre() ? 0 : mesh.subtract(0, t.k[i]);
@@ -136,6 +132,8 @@ bool Criteria::in_narrow_corner(const QuotientTriangulation& mesh,
   return false;
 }
 
+// [Miller-Pav-Walkington03]: an edge between two segments that meet in a narrow corner, its ends
+// equally far from it.
 bool Criteria::is_seditious(const QuotientTriangulation& mesh,
                             const Triangle& t,
                             const Assessment& assessment) const {
@@ -143,14 +141,21 @@ bool Criteria::is_seditious(const QuotientTriangulation& mesh,
   if (mesh.kind(t.v[i]) != VertexKind::kSegment || mesh.kind(t.v[j]) != VertexKind::kSegment) {
     return false;
   }
-  const Corner a = shell(t.v[i]), b = shell(t.v[j]);
-  if (a.v < 0 || a.v != b.v) return false;
-  const std::int32_t ka = mesh.shift(a.v, a.k, t.k[i]), kb = mesh.shift(b.v, b.k, t.k[j]);
-  if (ka != kb || (acute_[static_cast<std::size_t>(a.v)] & 2) == 0) return false;
-  const Point2 apex = mesh.lift(a.v, ka);
-  const double ra = distance(apex, mesh.corner_point(t, i));
-  const double rb = distance(apex, mesh.corner_point(t, j));
-  return std::abs(ra - rb) <= kShellRatio * ra;
+  const auto shifted = [&](Corner c, std::int32_t e) {
+    return Corner{c.v, mesh.shift(c.v, c.k, e)};
+  };
+  const SegmentEnds& s = ends_[static_cast<std::size_t>(t.v[i])];
+  const SegmentEnds& r = ends_[static_cast<std::size_t>(t.v[j])];
+  for (const Corner& a : {shifted(s.a, t.k[i]), shifted(s.b, t.k[i])}) {
+    for (const Corner& b : {shifted(r.a, t.k[j]), shifted(r.b, t.k[j])}) {
+      if (!(a == b) || !is_narrow(a.v)) continue;
+      const Point2 apex = mesh.lift(a.v, a.k);
+      const double ra = distance(apex, mesh.corner_point(t, i));
+      const double rb = distance(apex, mesh.corner_point(t, j));
+      if (std::abs(ra - rb) <= kShellRatio * ra) return true;
+    }
+  }
+  return false;
 }
 
 Exemption Criteria::exemption(const QuotientTriangulation& mesh,
@@ -176,11 +181,26 @@ bool Criteria::in_lens(Point2 a, Point2 b, Point2 p) const {
   return d * d >= cos_lens_ * cos_lens_ * squared_length(pa) * squared_length(pb);
 }
 
-void Criteria::set_shell(VertexId v, Corner apex) {
-  if (static_cast<std::size_t>(v) >= shells_.size()) {
-    shells_.resize(static_cast<std::size_t>(v) + 1);
+void Criteria::set_segment_ends(VertexId v, const SegmentEnds& ends) {
+  if (static_cast<std::size_t>(v) >= ends_.size()) ends_.resize(static_cast<std::size_t>(v) + 1);
+  ends_[static_cast<std::size_t>(v)] = ends;
+}
+
+Criteria::SegmentEnds Criteria::segment_ends(const QuotientTriangulation& mesh,
+                                             Corner v,
+                                             Corner other) const {
+  for (const Corner& c : {v, other}) {
+    if (mesh.kind(c.v) != VertexKind::kSegment) continue;
+    const SegmentEnds& ends = ends_[static_cast<std::size_t>(c.v)];
+    return {{ends.a.v, mesh.shift(ends.a.v, ends.a.k, c.k)},
+            {ends.b.v, mesh.shift(ends.b.v, ends.b.k, c.k)}};
   }
-  shells_[static_cast<std::size_t>(v)] = apex;
+  return {v, other};
+}
+
+bool Criteria::is_shell_vertex(VertexId v) const {
+  const SegmentEnds& ends = ends_[static_cast<std::size_t>(v)];
+  return is_narrow(ends.a.v) || is_narrow(ends.b.v);
 }
 
 }  // namespace symcell

@@ -70,14 +70,26 @@ class Criteria {
   [[nodiscard]] bool is_acute(VertexId v) const {
     return static_cast<std::size_t>(v) < acute_.size() && acute_[static_cast<std::size_t>(v)] != 0;
   }
-
-  // A Steiner point put on a shell round an acute vertex: the vertex and its exponent in the frame
-  // of the point.
-  void set_shell(VertexId v, Corner apex);
-  [[nodiscard]] Corner shell(VertexId v) const {
-    return static_cast<std::size_t>(v) < shells_.size() ? shells_[static_cast<std::size_t>(v)]
-                                                         : Corner{};
+  // Input vertices with a corner below the angle bound.
+  [[nodiscard]] bool is_narrow(VertexId v) const {
+    return static_cast<std::size_t>(v) < acute_.size() &&
+           (acute_[static_cast<std::size_t>(v)] & 2) != 0;
   }
+
+  // The ends of the input segment on which a Steiner point lies, in the frame of the point.
+  struct SegmentEnds {
+    Corner a;
+    Corner b;
+  };
+  void set_segment_ends(VertexId v, const SegmentEnds& ends);
+  // For any vertex of a subsegment that runs from it to `other`: the ends of its input segment in
+  // the frame in which the vertices are given.
+  [[nodiscard]] SegmentEnds segment_ends(const QuotientTriangulation& mesh,
+                                         Corner v,
+                                         Corner other) const;
+  // Whether a Steiner point lies on a segment that ends in a corner narrower than the bound: those
+  // stay on their shells, or edges across the corner would shorten without end.
+  [[nodiscard]] bool is_shell_vertex(VertexId v) const;
 
  private:
   // A corner of the input below the bound: between two directions, counter-clockwise.
@@ -105,7 +117,7 @@ class Criteria {
   std::vector<double> max_area_;              // per subdomain orbit
   std::vector<std::uint8_t> acute_;           // per input vertex: bit 0 acute, bit 1 narrow
   std::vector<NarrowCorner> narrow_;          // sorted by vertex
-  std::vector<Corner> shells_;                // per vertex
+  std::vector<SegmentEnds> ends_;             // per vertex on a segment
 };
 
 }  // namespace symcell

@@ -185,11 +185,9 @@ void Refiner::clear_lens(SubsegmentId s) {
 }
 
 // The midpoint, or, next to an acute vertex, the nearest shell: lengths of a power of two.
-Point2 Refiner::split_point(SubsegmentId s, Corner a, Corner b, Corner* apex) const {
-  static_cast<void>(s);
+Point2 Refiner::split_point(Corner a, Corner b) const {
   const Point2 p = mesh_.lift(a.v, a.k), q = mesh_.lift(b.v, b.k);
   const bool at_a = criteria_.is_acute(a.v), at_b = criteria_.is_acute(b.v);
-  *apex = Corner{};
   if (at_a == at_b) return 0.5 * (p + q);
   const double len = distance(p, q) / unit_;
   // A shell between a third and two thirds of the way.
@@ -197,7 +195,6 @@ Point2 Refiner::split_point(SubsegmentId s, Corner a, Corner b, Corner* apex) co
   static_cast<void>(std::frexp(len / 1.5, &exponent));
   double shell = std::ldexp(1.0, exponent - 1);
   if (shell > len * 2.0 / 3.0) shell *= 0.5;
-  *apex = at_a ? a : b;
   const double part = shell / len;
   return at_a ? p + part * (q - p) : q + part * (p - q);
 }
@@ -213,24 +210,34 @@ Result<void> Refiner::split(SubsegmentId s) {
   if (squared_distance(p, q) < 4 * shortest_allowed2_) {
     return tl::unexpected<Error>(unreachable(t));
   }
-  Corner apex;
-  Point2 x = split_point(s, a, b, &apex);
+  const Criteria::SegmentEnds ends = criteria_.segment_ends(mesh_, a, b);
+  Point2 x = split_point(a, b);
   editor_.compute_edge_cavity(h, x, cavity_);
-  if (relocate_ && apex.v < 0 && cavity_.simple) {
+  bool optimal = false;
+  const bool on_shells = criteria_.is_narrow(ends.a.v) || criteria_.is_narrow(ends.b.v);
+  if (relocate_ && !on_shells && cavity_.simple) {
     surgery_.lift_edges(cavity_.edges, star_edges_);
-    if (const auto y = surgery_.region().find_on_line(star_edges_, p, q - p)) x = *y;
+    if (const auto y = surgery_.region().find_on_line(star_edges_, p, q - p)) {
+      x = *y;
+      optimal = true;
+    }
   }
   const VertexId v = editor_.insert_on_edge(h, x, cavity_, VertexKind::kSegment);
   if (v < 0) return tl::unexpected<Error>(unreachable(t));
-  for (const TriangleId id : editor_.star()) {
-    for (std::uint32_t e = 0; e < 3; ++e) editor_.queue_edge(3 * id + e);
-  }
-  editor_.legalise();
-  criteria_.set_shell(v, apex);
+  if (optimal) settle_star();
+  criteria_.set_segment_ends(v, ends);
   ++counters_.splits;
   ++counters_.inserted;
   enqueue_created();
   return {};
+}
+
+// The star of a point that is not the one its cavity was made for need not be Delaunay.
+void Refiner::settle_star() {
+  for (const TriangleId t : editor_.star()) {
+    for (std::uint32_t j = 0; j < 3; ++j) editor_.queue_edge(3 * t + j);
+  }
+  editor_.legalise();
 }
 
 // ---------------------------------------------------------------------------- bad triangles
@@ -329,10 +336,7 @@ Refiner::Outcome Refiner::insert_for(TriangleId t, Point2 x) {
   }
   const VertexId v = editor_.insert_in_cavity(home, x, cavity_, VertexKind::kFree);
   if (v < 0) return Outcome::kStuck;
-  if (optimal) {
-    for (const TriangleId id : editor_.star()) editor_.queue_edge(3 * id);
-    editor_.legalise();
-  }
+  if (optimal) settle_star();
   if (where.exponent != 0) ++editor_.counters().crossings;
   if (static_cast<std::size_t>(v) < moves_.size()) moves_[static_cast<std::size_t>(v)] = 0;
   ++counters_.inserted;

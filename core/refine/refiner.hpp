@@ -53,7 +53,8 @@ class Refiner {
   [[nodiscard]] Result<void> split_queued_subsegments();
   [[nodiscard]] Result<void> split(SubsegmentId s);
   void clear_lens(SubsegmentId s);
-  [[nodiscard]] Point2 split_point(SubsegmentId s, Corner a, Corner b, Corner* apex) const;
+  [[nodiscard]] Point2 split_point(Corner a, Corner b) const;
+  void settle_star();
   [[nodiscard]] Outcome treat(TriangleId t);
   [[nodiscard]] bool relocate_corner_of(TriangleId t);
   [[nodiscard]] Outcome insert_for(TriangleId t, Point2 x);

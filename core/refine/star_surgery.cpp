@@ -268,6 +268,9 @@ bool StarSurgery::collect_sides(std::initializer_list<Corner> removed, const Seg
 }
 
 bool StarSurgery::merge_on_segment(std::initializer_list<Corner> removed) {
+  for (const Corner& c : removed) {
+    if (mesh_.kind(c.v) == VertexKind::kSegment && criteria_.is_shell_vertex(c.v)) return false;
+  }
   if (!gather_union(removed) || !segment_ends(removed, ends_)) return false;
   if (!collect_sides(removed, ends_)) return false;
   lift_edges(cavity_.edges, star_edges_);
