@@ -1,0 +1,56 @@
+// The program: one binary, a subcommand each for meshing, inspecting, verifying and serving.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "api/version.hpp"
+#include "server/cli/commands.hpp"
+#include "server/cli/report_error.hpp"
+#if SYMCELL_HAS_SERVE
+#include "server/cli/serve_command.hpp"
+#endif
+
+namespace {
+
+constexpr int kWrongUsage = 2;
+
+int run(int argc, char** argv) {
+  CLI::App app(
+      "Meshes one symmetry cell of an n-fold rotationally symmetric planar model, from "
+      "which the full mesh is n rotated copies.");
+  app.name("symcell");
+  app.set_version_flag("--version", std::string("symcell ") + std::string(symcell::version()));
+  app.require_subcommand(1);
+  app.footer("symcell COMMAND --help tells more.");
+  int exit_code = 0;
+  symcell::cli::add_mesh_command(app, exit_code);
+  symcell::cli::add_inspect_command(app, exit_code);
+#if SYMCELL_HAS_SERVE
+  symcell::add_serve_command(app, exit_code);
+#endif
+  symcell::cli::add_verify_command(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    std::fprintf(stderr, "symcell: %s; see symcell --help\n", error.what());
+    return kWrongUsage;
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using symcell::Error;
+  using symcell::ErrorCode;
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return symcell::cli::report_error(
+        Error{ErrorCode::kMemoryLimit, "out of memory; relax the size bounds", {}, {}}, false);
+  } catch (const std::exception& error) {
+    return symcell::cli::report_error(Error{ErrorCode::kInternal, error.what(), {}, {}}, false);
+  }
+}

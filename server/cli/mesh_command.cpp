@@ -1,0 +1,217 @@
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "api/formats/mesh_writer.hpp"
+#include "api/schema/statistics_json.hpp"
+#include "core/mesh_pslg.hpp"
+#include "server/cli/atomic_output.hpp"
+#include "server/cli/commands.hpp"
+#include "server/cli/interrupt.hpp"
+#include "server/cli/model_input.hpp"
+#include "server/cli/option_flags.hpp"
+#include "server/cli/progress_bar.hpp"
+#include "server/cli/report_error.hpp"
+
+namespace symcell::cli {
+namespace {
+
+constexpr const char* kExamples =
+    R"(Formats, from the ending or --format: vtu (ParaView), json, msh (Gmsh 4.1 with the periodic
+bounds), svg (a picture). Lengths and areas are in the model's own units, angles in degrees.
+
+Examples:
+  symcell mesh gear.json --cell cell.vtu --full full.vtu --stats stats.json
+  symcell mesh gear.poly --fold 17 --min-angle 33 --max-area 0.1 --cell cell.msh
+  cat flange.json | symcell mesh - --max-edge 2 --full - --format json | jq .fold
+
+Exit status: 0 done, 1 meshing failed, 2 wrong usage, 3 the model is not acceptable,
+4 a limit was reached (time, memory, size).
+)";
+
+struct MeshArguments {
+  std::string model;
+  std::string cell;
+  std::string full;
+  std::string stats;
+  std::string format;
+  std::string encoding = "raw";
+  bool json_errors = false;
+  bool quiet = false;
+  OptionFlags flags;
+};
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+std::uint64_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+Result<MeshFormat> output_format(const std::string& path, const std::string& format) {
+  std::string name = format;
+  if (name.empty() && path == "-") name = "vtu";
+  if (name.empty()) name = std::filesystem::path(path).extension().string();
+  if (const std::optional<MeshFormat> found = mesh_format_from_name(name)) return *found;
+  const std::string whose = format.empty() ? "the ending of " + path : "--format " + format;
+  return fail(ErrorCode::kBadOption,
+              whose + " names no format for meshes; take vtu, json, msh or svg");
+}
+
+Result<WriteOptions> write_options(const std::string& encoding) {
+  WriteOptions options;
+  if (encoding == "zlib") options.vtu_encoding = VtuEncoding::kAppendedZlib;
+  if (encoding == "ascii") options.vtu_encoding = VtuEncoding::kAscii;
+  if (encoding == "raw" || encoding == "zlib" || encoding == "ascii") return options;
+  return fail(ErrorCode::kBadOption, "--vtu-encoding must be raw, zlib or ascii, not " + encoding);
+}
+
+struct MeshOutput {
+  MeshPart part;
+  MeshFormat format;
+  AtomicOutput file;
+};
+
+// All outputs are opened before the work begins: a wrong path costs nothing.
+class MeshRun {
+ public:
+  explicit MeshRun(const MeshArguments& arguments) : arguments_(arguments) {}
+
+  Result<void> run() {
+    auto done = prepare();
+    if (!done) return done;
+    const InterruptCancels interrupt(context_);
+    ProgressBar bar(context_, !arguments_.quiet);
+    auto outcome = mesh();
+    if (outcome) done = write(*outcome);
+    bar.stop();
+    if (!outcome) return tl::unexpected(outcome.error());
+    // A sink that stops for a signal looks like a failed write.
+    if (!done && context_.cancelled()) {
+      return fail(ErrorCode::kCancelled, "cancelled while writing; no output was left");
+    }
+    if (!done) return done;
+    return commit();
+  }
+
+ private:
+  Result<void> prepare() {
+    const Result<MeshOptions> options = arguments_.flags.options();
+    if (!options) return tl::unexpected(options.error());
+    options_ = *options;
+    const Result<WriteOptions> writing = write_options(arguments_.encoding);
+    if (!writing) return tl::unexpected(writing.error());
+    write_options_ = *writing;
+    const std::array paths{arguments_.cell, arguments_.full, arguments_.stats};
+    if (std::ranges::count(paths, std::string("-")) > 1) {
+      return fail(ErrorCode::kBadOption, "only one output can go to standard output");
+    }
+    for (const auto& [part, path] : {std::pair{MeshPart::kCell, arguments_.cell},
+                                     std::pair{MeshPart::kFull, arguments_.full}}) {
+      if (path.empty()) continue;
+      const Result<MeshFormat> format = output_format(path, arguments_.format);
+      if (!format) return tl::unexpected(format.error());
+      Result<AtomicOutput> file = AtomicOutput::open(path);
+      if (!file) return tl::unexpected(file.error());
+      meshes_.push_back({part, *format, std::move(*file)});
+    }
+    // With no output asked for, the figures are what one wants to see.
+    const bool nothing = meshes_.empty() && arguments_.stats.empty();
+    if (!nothing && arguments_.stats.empty()) return {};
+    Result<AtomicOutput> file = AtomicOutput::open(nothing ? "-" : arguments_.stats);
+    if (!file) return tl::unexpected(file.error());
+    statistics_.emplace(std::move(*file));
+    return {};
+  }
+
+  Result<MeshOutcome> mesh() {
+    context_.set_time_limit(options_.time_limit_s);
+    context_.set_max_elements(options_.max_elements);
+    const Clock::time_point start = Clock::now();
+    const Result<Pslg> model = read_model_file(arguments_.model);
+    if (!model) return tl::unexpected(model.error());
+    const double parse_ms = milliseconds_since(start);
+    Result<MeshOutcome> outcome = mesh_pslg(*model, options_, context_);
+    if (outcome) outcome->statistics.timings_ms.parse = parse_ms;
+    return outcome;
+  }
+
+  Result<void> write(MeshOutcome& outcome) {
+    Statistics::TimingsMs& timings = outcome.statistics.timings_ms;
+    for (MeshOutput& output : meshes_) {
+      const Clock::time_point start = Clock::now();
+      const Sink file = output.file.sink();
+      const Sink sink = [&](std::string_view piece) {
+        return !context_.cancelled() && file(piece);
+      };
+      auto written = write_mesh(outcome.mesh, output.part, output.format, write_options_, sink);
+      if (!written) return written;
+      (output.part == MeshPart::kFull ? timings.restore : timings.write) +=
+          milliseconds_since(start);
+    }
+    timings.total = milliseconds_since(start_);
+    outcome.statistics.peak_memory_bytes =
+        std::max(outcome.statistics.peak_memory_bytes, peak_memory());
+    if (!statistics_) return {};
+    const std::string text = statistics_to_json(outcome.statistics, options_).dump(2) + "\n";
+    if (statistics_->sink()(text)) return {};
+    return fail(ErrorCode::kWriteFailed, "the statistics could not be written");
+  }
+
+  Result<void> commit() {
+    for (MeshOutput& output : meshes_) {
+      if (auto done = output.file.commit(); !done) return done;
+    }
+    return statistics_ ? statistics_->commit() : Result<void>{};
+  }
+
+  const MeshArguments& arguments_;
+  Clock::time_point start_ = Clock::now();
+  MeshOptions options_;
+  WriteOptions write_options_;
+  std::vector<MeshOutput> meshes_;
+  std::optional<AtomicOutput> statistics_;
+  ExecutionContext context_;
+};
+
+}  // namespace
+
+void add_mesh_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "mesh", "Mesh one model: its symmetry cell, the full mesh, the statistics");
+  const auto arguments = std::make_shared<MeshArguments>();
+  command->add_option("MODEL", arguments->model, "PSLG JSON or Triangle .poly; - : standard input")
+      ->required()
+      ->option_text(" ");
+  const auto add = [&](const char* name, std::string& target, const char* help, const char* value) {
+    command->add_option(name, target, help)->type_name(value)->group("Output");
+  };
+  add("--cell", arguments->cell, "the symmetry cell; - : standard output", "FILE");
+  add("--full", arguments->full, "the full mesh, all n sectors", "FILE");
+  add("--stats", arguments->stats, "the statistics, JSON; the default if no output is named",
+      "FILE");
+  add("--format", arguments->format, "of both meshes, whatever the endings", "vtu|json|msh|svg");
+  add("--vtu-encoding", arguments->encoding, "of VTU files [raw]", "raw|zlib|ascii");
+  arguments->flags.add_to(*command);
+  command->add_flag("--json-errors", arguments->json_errors,
+                    "errors as problem documents (JSON) on standard error");
+  command->add_flag("-q,--quiet", arguments->quiet, "no progress bar");
+  command->footer(kExamples);
+  command->callback([arguments, &exit_code] {
+    const Result<void> done = MeshRun(*arguments).run();
+    exit_code = done ? 0 : report_error(done.error(), arguments->json_errors);
+  });
+}
+
+}  // namespace symcell::cli

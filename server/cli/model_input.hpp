@@ -1,0 +1,21 @@
+// Input files of the commands: a path, or "-" for standard input.
+#pragma once
+
+#include <string>
+
+#include "core/base/error.hpp"
+#include "core/cells/mesh_data.hpp"
+#include "core/model/pslg.hpp"
+
+namespace symcell::cli {
+
+// All bytes.  Errors: kUnreadable (with the system's words), kTooLarge.
+[[nodiscard]] Result<std::string> read_input(const std::string& path);
+
+// A model; its format by the file's ending, else by content.
+[[nodiscard]] Result<Pslg> read_model_file(const std::string& path);
+
+// A VTU mesh, also gzip'd.
+[[nodiscard]] Result<MeshData> read_mesh_file(const std::string& path);
+
+}  // namespace symcell::cli

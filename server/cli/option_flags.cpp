@@ -1,0 +1,35 @@
+#include "server/cli/option_flags.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "api/schema/options.hpp"
+
+namespace symcell::cli {
+
+void OptionFlags::add_to(CLI::App& command) {
+  for (const OptionInfo& info : mesh_option_table()) {
+    const std::string name(info.name);
+    std::string flag = "--" + name;
+    std::ranges::replace(flag, '_', '-');
+    std::string help(info.help);
+    if (!info.standard.empty()) help += " [" + std::string(info.standard) + "]";
+    CLI::Option* option = nullptr;
+    if (info.metavar.empty()) {
+      option = command.add_flag_callback(
+          flag, [this, name] { given_.emplace_back(name, ""); }, help);
+    } else {
+      option = command.add_option_function<std::string>(
+          flag, [this, name](const std::string& value) { given_.emplace_back(name, value); }, help);
+      option->type_name(std::string(info.metavar));
+      option->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+    }
+    option->group(info.solids_only ? "" : "Meshing");
+  }
+}
+
+Result<MeshOptions> OptionFlags::options() const {
+  return options_from_texts(given_);
+}
+
+}  // namespace symcell::cli

@@ -1,0 +1,29 @@
+// The meshing options as command-line flags, from the table that JSON and query strings share.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/model/mesh_options.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace symcell::cli {
+
+class OptionFlags {
+ public:
+  // Adds a flag an option; keeps a reference into this object, which must outlive the parsing.
+  void add_to(CLI::App& command);
+  // After parsing.  Errors: kBadOption, kBadFold, kBadAxis.
+  [[nodiscard]] Result<MeshOptions> options() const;
+
+ private:
+  std::vector<std::pair<std::string, std::string>> given_;
+};
+
+}  // namespace symcell::cli

@@ -1,0 +1,136 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/cells/verify_mesh.hpp"
+#include "core/model/validate_pslg.hpp"
+#include "core/symmetry/symmetrise.hpp"
+#include "server/cli/commands.hpp"
+#include "server/cli/model_input.hpp"
+#include "server/cli/report_error.hpp"
+
+namespace symcell::cli {
+namespace {
+
+constexpr const char* kExamples =
+    R"(Without --full the full mesh is restored from the cell's own pairs and checked.
+Exit status: 0 all checks hold, 1 a check fails, 2 wrong usage, 3 a file is not acceptable.
+
+Examples:
+  symcell verify cell.vtu --full full.vtu --model gear.json
+  symcell verify cell.vtu --json | jq '.checks[] | select(.status == "fail")'
+)";
+
+struct VerifyArguments {
+  std::string cell;
+  std::string full;
+  std::string model;
+  double tolerance = VerifyOptions{}.tolerance_rel;
+  double model_tolerance = VerifyOptions{}.model_tolerance_rel;
+  bool json = false;
+  bool quiet = false;
+  bool json_errors = false;
+};
+
+const char* status_name(Check::Status status) {
+  switch (status) {
+    case Check::Status::kPass: return "pass";
+    case Check::Status::kFail: return "fail";
+    case Check::Status::kSkip: return "skip";
+  }
+  return "fail";
+}
+
+// The model's area at the mesh's own fold; nothing where the model cannot be measured.
+std::optional<double> model_area(const Pslg& model, std::int32_t fold) {
+  ExecutionContext context;
+  if (!validate_pslg(model, context)) return std::nullopt;
+  MeshOptions options;
+  options.fold = fold;
+  options.ignore_markers = true;
+  options.symmetry_tolerance_rel = 1e-3;
+  const Result<PslgInspection> found = inspect_pslg(model, options, context);
+  if (!found) return std::nullopt;
+  return found->area;
+}
+
+void print_report(const VerifyReport& report, const VerifyArguments& arguments) {
+  if (arguments.json) {
+    nlohmann::ordered_json json;
+    json["ok"] = report.ok();
+    json["checks"] = nlohmann::ordered_json::array();
+    for (const Check& c : report.checks) {
+      json["checks"].push_back(
+          {{"name", c.name}, {"status", status_name(c.status)}, {"detail", c.detail}});
+    }
+    std::printf("%s\n", json.dump(2).c_str());
+    return;
+  }
+  for (const Check& c : report.checks) {
+    if (arguments.quiet && c.status != Check::Status::kFail) continue;
+    std::printf("%s  %-20s %s\n", status_name(c.status), c.name.c_str(), c.detail.c_str());
+  }
+  if (!arguments.quiet) std::printf("%s\n", report.ok() ? "all checks hold" : "NOT VALID");
+}
+
+Result<bool> verify(const VerifyArguments& arguments) {
+  const Result<MeshData> cell = read_mesh_file(arguments.cell);
+  if (!cell) return tl::unexpected(cell.error());
+  std::optional<MeshData> full;
+  if (!arguments.full.empty()) {
+    Result<MeshData> read = read_mesh_file(arguments.full);
+    if (!read) return tl::unexpected(read.error());
+    full = std::move(*read);
+  }
+  std::optional<Pslg> model;
+  VerifyOptions options;
+  options.tolerance_rel = arguments.tolerance;
+  options.model_tolerance_rel = arguments.model_tolerance;
+  if (!arguments.model.empty()) {
+    Result<Pslg> read = read_model_file(arguments.model);
+    if (!read) return tl::unexpected(read.error());
+    model = std::move(*read);
+    options.model_area = model_area(*model, cell->fold);
+  }
+  const VerifyReport report =
+      verify_mesh(*cell, full ? &*full : nullptr, model ? &*model : nullptr, options);
+  print_report(report, arguments);
+  return report.ok();
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "verify", "Check a cell (VTU), its full mesh and its model against each other");
+  const auto arguments = std::make_shared<VerifyArguments>();
+  command->add_option("CELL", arguments->cell, "the symmetry cell, .vtu; - : standard input")
+      ->required()
+      ->option_text(" ");
+  command->add_option("--full", arguments->full, "the full mesh, .vtu")->type_name("FILE");
+  command->add_option("--model", arguments->model, "the model: PSLG JSON or .poly")
+      ->type_name("FILE");
+  command
+      ->add_option("--tolerance", arguments->tolerance,
+                   "of pairs and copies, a share of the diameter [1e-9]")
+      ->type_name("T")
+      ->check(CLI::Range(0.0, 0.1));
+  command
+      ->add_option("--model-tolerance", arguments->model_tolerance,
+                   "of nodes against the model, a share of the diameter [1e-6]")
+      ->type_name("T")
+      ->check(CLI::Range(0.0, 0.1));
+  command->add_flag("--json", arguments->json, "the report as JSON");
+  command->add_flag("-q,--quiet", arguments->quiet, "print failures only");
+  command->add_flag("--json-errors", arguments->json_errors,
+                    "errors as problem documents (JSON) on standard error");
+  command->footer(kExamples);
+  command->callback([arguments, &exit_code] {
+    const Result<bool> holds = verify(*arguments);
+    exit_code = holds ? (*holds ? 0 : 1) : report_error(holds.error(), arguments->json_errors);
+  });
+}
+
+}  // namespace symcell::cli
