@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/model/near_vertices.hpp"
+
 namespace symcell {
 namespace {
 
@@ -39,12 +41,28 @@ void measure(const Pslg& pslg, Subdomains& subdomains) {
   subdomains.faces[0].moment = {};
 }
 
+// Where segments cross, vertices that touch but for rounding may be the reason: then the segments
+// are cut there. The error, if it stays, is the one of the input as given.
+Result<PlanarMap> make_tolerant_map(const Pslg& pslg,
+                                    const std::vector<Point2>& seeds,
+                                    ExecutionContext& context) {
+  auto exact = make_planar_map(pslg.vertices, pslg.segments, seeds, context);
+  if (exact || exact.error().code != ErrorCode::kSelfIntersection) return exact;
+  const auto cut = cut_at_near_vertices(pslg.vertices, pslg.segments, resolution_of(pslg.vertices));
+  if (!cut) return exact;
+  auto map = make_planar_map(pslg.vertices, cut->segments, seeds, context);
+  if (!map) return exact;
+  map->cuts += cut->segments.size() - pslg.segments.size();
+  for (PlanarPiece& piece : map->pieces) piece.segment = cut->source[at(piece.segment)];
+  return map;
+}
+
 }  // namespace
 
 Result<Subdomains> make_subdomains(const Pslg& pslg, ExecutionContext& context) {
   std::vector<Point2> seeds = pslg.holes;
   for (const PslgRegion& region : pslg.regions) seeds.push_back(region.point);
-  auto map = make_planar_map(pslg.vertices, pslg.segments, seeds, context);
+  auto map = make_tolerant_map(pslg, seeds, context);
   if (!map) return tl::unexpected(map.error());
 
   Subdomains result;

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/base/execution_context.hpp"
+#include "core/geometry/segment_index.hpp"
 #include "core/symmetry/prepared_pslg.hpp"
-#include "core/symmetry/segment_index.hpp"
 #include "core/symmetry/symmetrise.hpp"
 
 namespace symcell {

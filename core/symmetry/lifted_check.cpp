@@ -5,7 +5,7 @@
 
 #include "core/geometry/rotation.hpp"
 #include "core/model/describe.hpp"
-#include "core/model/subdomains.hpp"
+#include "core/model/planar_map.hpp"
 
 namespace symcell {
 namespace {
@@ -162,21 +162,23 @@ Pslg lift_pslg(const SymmetricPslg& symmetric) {
 
 Result<void> check_and_seed(ClosedOrbits& closed, ExecutionContext& context) {
   const Pslg lifted = lift_pslg(closed.pslg);
-  const auto subdomains = make_subdomains(lifted, context);
-  if (!subdomains) {
-    const Error& error = subdomains.error();
+  std::vector<Point2> seeds = lifted.holes;
+  for (const PslgRegion& region : lifted.regions) seeds.push_back(region.point);
+  const auto map = make_planar_map(lifted.vertices, lifted.segments, seeds, context);
+  if (!map) {
+    const Error& error = map.error();
     const bool geometric = error.code == ErrorCode::kSelfIntersection ||
                            error.code == ErrorCode::kOverlappingSegments ||
                            error.code == ErrorCode::kDuplicateVertices;
     if (!geometric) return tl::unexpected(error);
     return degenerate("segments cross, overlap or shrink to nothing");
   }
-  if (subdomains->map.cuts > 0 || subdomains->map.pieces.size() != lifted.segments.size()) {
+  if (map->cuts > 0 || map->pieces.size() != lifted.segments.size()) {
     return degenerate("a vertex comes to lie on a segment");
   }
-  const auto labels = face_labels(lifted, subdomains->map, closed.sides);
+  const auto labels = face_labels(lifted, *map, closed.sides);
   if (!labels) return tl::unexpected(labels.error());
-  Seeding seeding(lifted, subdomains->map, *labels);
+  Seeding seeding(lifted, *map, *labels);
   seeding.run(closed.pslg);
   return {};
 }

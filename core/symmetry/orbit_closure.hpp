@@ -8,8 +8,8 @@
 #include <string>
 
 #include "core/base/execution_context.hpp"
+#include "core/geometry/segment_index.hpp"
 #include "core/symmetry/prepared_pslg.hpp"
-#include "core/symmetry/segment_index.hpp"
 #include "core/symmetry/symmetric_pslg.hpp"
 
 namespace symcell {

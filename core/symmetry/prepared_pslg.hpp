@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/model/near_vertices.hpp"
 #include "core/model/subdomains.hpp"
 
 namespace symcell {
@@ -39,11 +40,7 @@ struct PreparedPslg {
   Point2 box_low;
   Point2 box_high;
 
-  // Below this distance positions are the same: the digits the input has, and what checkers of
-  // meshes commonly grant.
-  [[nodiscard]] double resolution() const {
-    return std::max(1e-12 * diameter, 64 * 0x1p-53 * magnitude);
-  }
+  [[nodiscard]] double resolution() const { return resolution_of(diameter, magnitude); }
 };
 
 [[nodiscard]] PreparedPslg prepare_pslg(const Pslg& pslg,

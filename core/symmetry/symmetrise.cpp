@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/segment_index.hpp"
 #include "core/model/describe.hpp"
 #include "core/model/validate_pslg.hpp"
 #include "core/symmetry/fold_detection.hpp"
 #include "core/symmetry/lifted_check.hpp"
 #include "core/symmetry/orbit_closure.hpp"
 #include "core/symmetry/prepared_pslg.hpp"
-#include "core/symmetry/segment_index.hpp"
 #include "core/symmetry/symmetriser.hpp"
 
 namespace symcell {

@@ -1,4 +1,4 @@
-#include "core/symmetry/segment_index.hpp"
+#include "core/geometry/segment_index.hpp"
 
 #include <numeric>
 
