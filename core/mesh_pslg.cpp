@@ -7,6 +7,7 @@
 #include "core/cells/extract_cell.hpp"
 #include "core/cells/quadratic.hpp"
 #include "core/delaunay/insert.hpp"
+#include "core/improve/coarsen.hpp"
 #include "core/initial/initial_triangulation.hpp"
 #include "core/model/validate_pslg.hpp"
 #include "core/refine/criteria.hpp"
@@ -97,6 +98,10 @@ Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
   DelaunayEditor editor(start->mesh);
   Refiner refiner(editor, criteria, symmetric->center, !options.plain, context);
   if (auto ok = refiner.run(); !ok) return tl::unexpected<Error>(ok.error());
+  Coarsener coarsener(editor, criteria, refiner.surgery(), context);
+  if (!options.plain) {
+    if (auto ok = coarsener.run(); !ok) return tl::unexpected<Error>(ok.error());
+  }
   if (auto ok = validate(start->mesh, ValidationLevel::kDelaunay); !ok) {
     return tl::unexpected<Error>(ok.error());
   }
@@ -121,8 +126,9 @@ Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
         start->mesh.kind(static_cast<VertexId>(v)) != VertexKind::kDeleted ? 1 : 0;
   }
   stats.refinement.splits = done.splits;
-  stats.refinement.relocations = done.relocations;
-  stats.refinement.removed = done.removed;
+  const CoarsenCounters& coarsened = coarsener.counters();
+  stats.refinement.relocations = done.relocations + coarsened.relocations;
+  stats.refinement.removed = done.removed + coarsened.removed + coarsened.merged;
   stats.refinement.flips = editor.counters().flips;
   stats.refinement.crossings = editor.counters().crossings;
   stats.timings_ms.total = total.lap();

@@ -11,8 +11,8 @@ namespace symcell {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kMaxMinAngleDeg = 42.0;
-// Exponents and their sums stay far inside 32 bits, and a rotation table stays below 2 MB.
-inline constexpr std::int32_t kMaxFold = 100'000;
+// Exponents fit 16 bits in the triangulation; no real part comes near it.
+inline constexpr std::int32_t kMaxFold = 30'000;
 
 // Values are what a user writes in `options`; infinities mean "no bound".
 struct MeshOptions {

@@ -36,6 +36,7 @@ struct Active {
 struct Below {
   using is_transparent = void;
   bool operator()(const Active& s, const Active& t) const {
+    if (s.lo == t.lo) return orientation(s.lo, s.hi, t.hi) == Sign::kPositive;
     if (before(s.lo, t.lo)) {
       const Sign at_lo = orientation(s.lo, s.hi, t.lo);
       return (at_lo != Sign::kZero ? at_lo : orientation(s.lo, s.hi, t.hi)) == Sign::kPositive;
@@ -43,11 +44,12 @@ struct Below {
     const Sign at_lo = orientation(t.lo, t.hi, s.lo);
     return (at_lo != Sign::kZero ? at_lo : orientation(t.lo, t.hi, s.hi)) == Sign::kNegative;
   }
+  // An end of the segment is on it: the common case, which the filter could not decide.
   bool operator()(const Active& s, Point2 p) const {
-    return orientation(s.lo, s.hi, p) == Sign::kPositive;
+    return p != s.hi && orientation(s.lo, s.hi, p) == Sign::kPositive;
   }
   bool operator()(Point2 p, const Active& s) const {
-    return orientation(s.lo, s.hi, p) == Sign::kNegative;
+    return p != s.hi && orientation(s.lo, s.hi, p) == Sign::kNegative;
   }
 };
 
@@ -238,7 +240,7 @@ class Sweep {
   }
 
   Result<void> check_pair(const Active& s, const Active& t) const {
-    if (s.hi_vertex == t.hi_vertex) return {};
+    if (s.hi_vertex == t.hi_vertex || s.lo == t.lo) return {};
     const auto opposite = [](Sign u, Sign w) { return u != Sign::kZero && u == -w; };
     if (!opposite(orientation(s.lo, s.hi, t.lo), orientation(s.lo, s.hi, t.hi))) return {};
     if (!opposite(orientation(t.lo, t.hi, s.lo), orientation(t.lo, t.hi, s.hi))) return {};

@@ -37,6 +37,8 @@ class FeasibleRegion {
                                                    Point2 p,
                                                    Point2 d) const;
 
+  [[nodiscard]] std::size_t most_edges() const { return most_edges_; }
+
  private:
   struct Disc {
     Point2 centre;

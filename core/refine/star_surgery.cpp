@@ -67,6 +67,18 @@ bool touches(const std::vector<CavityEdge>& edges, std::initializer_list<Corner>
   return false;
 }
 
+// Whether a subsegment on the boundary of the region has the region on its other side too, at
+// another exponent. (collect_region sees to the other edges.)
+bool meets_itself(const std::vector<CavityEdge>& edges, const std::vector<CavityTriangle>& region) {
+  for (const CavityEdge& e : edges) {
+    if (e.seg == kNoSubsegment || e.mate == kNoHalfEdge) continue;
+    for (const CavityTriangle& c : region) {
+      if (c.t == triangle_of(e.mate)) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 bool StarSurgery::relocate(VertexId v) {
@@ -77,6 +89,8 @@ bool StarSurgery::relocate(VertexId v) {
   lift_edges(cavity_.edges, star_edges_);
   const auto x = region_.find(star_edges_);
   if (!x) return false;
+  const bool transaction = criteria_.has_size_bound() && !mesh_.in_transaction();
+  if (transaction) mesh_.begin();
   mesh_.touch_vertex(v);
   mesh_.move_vertex(v, *x);
   editor_.created().clear();
@@ -85,7 +99,7 @@ bool StarSurgery::relocate(VertexId v) {
     for (std::uint32_t j = 0; j < 3; ++j) editor_.queue_edge(3 * c.t + j);
   }
   editor_.legalise();
-  return true;
+  return keep_if_sizes_hold(transaction);
 }
 
 bool StarSurgery::merge(std::initializer_list<Corner> removed) {
@@ -125,14 +139,14 @@ bool StarSurgery::merge_free(std::initializer_list<Corner> removed) {
   }
   if (!gather_union(removed)) return false;
   if (editor_.collect_region(union_, cavity_) != static_cast<std::int32_t>(removed.size()) ||
-      touches(cavity_.edges, removed)) {
+      touches(cavity_.edges, removed) || meets_itself(cavity_.edges, union_)) {
     return false;
   }
   lift_edges(cavity_.edges, star_edges_);
   const auto x = region_.find(star_edges_);
   if (!x) return false;
   // Angles survive the flips that follow, areas and lengths need not.
-  const bool transaction = criteria_.has_size_bound();
+  const bool transaction = criteria_.has_size_bound() && !mesh_.in_transaction();
   if (transaction) mesh_.begin();
   const Corner kept = *removed.begin();
   mesh_.touch_vertex(kept.v);
@@ -216,7 +230,6 @@ bool StarSurgery::collect_sides(std::initializer_list<Corner> removed, const Seg
     return s != kNoSubsegment &&
            std::find(ends.chain.begin(), ends.chain.end(), s) != ends.chain.end();
   };
-  const Corner first_middle = *removed.begin();
   for (int way = 0; way < 2; ++way) {
     const Corner from = way == 0 ? ends.b : ends.a, to = way == 0 ? ends.a : ends.b;
     // The triangle on this side at the first removed vertex: its chain edge runs towards `from`.
@@ -262,9 +275,8 @@ bool StarSurgery::collect_sides(std::initializer_list<Corner> removed, const Seg
       cavity_.right_triangles = cavity_.triangles.size();
     }
   }
-  static_cast<void>(first_middle);
   return inside == free && cavity_.triangles.size() == union_.size() &&
-         !touches(cavity_.edges, removed);
+         !touches(cavity_.edges, removed) && !meets_itself(cavity_.edges, union_);
 }
 
 bool StarSurgery::merge_on_segment(std::initializer_list<Corner> removed) {
@@ -277,7 +289,7 @@ bool StarSurgery::merge_on_segment(std::initializer_list<Corner> removed) {
   const Point2 a = mesh_.lift(ends_.a.v, ends_.a.k), b = mesh_.lift(ends_.b.v, ends_.b.k);
   const auto x = region_.find_on_line(star_edges_, a, b - a);
   if (!x) return false;
-  const bool transaction = criteria_.has_size_bound();
+  const bool transaction = criteria_.has_size_bound() && !mesh_.in_transaction();
   if (transaction) mesh_.begin();
   const Corner kept = *removed.begin();
   mesh_.touch_vertex(kept.v);
@@ -313,40 +325,97 @@ bool StarSurgery::merge_on_segment(std::initializer_list<Corner> removed) {
   return keep_if_sizes_hold(transaction);
 }
 
-bool StarSurgery::remove(VertexId v) {
-  if (mesh_.kind(v) != VertexKind::kFree) return false;
-  if (!gather_union({{v, 0}}) || editor_.collect_region(union_, cavity_) != 1) return false;
-  if (touches(cavity_.edges, {{v, 0}})) return false;
-  const std::vector<CavityEdge>& edges = cavity_.edges;
-  const std::size_t n = edges.size();
+// A vertex of the polygon from which all of it is seen, if there is one.
+std::optional<std::size_t> StarSurgery::fan_apex(const std::vector<CavityEdge>& polygon) const {
+  const std::size_t n = polygon.size();
   for (std::size_t apex = 0; apex < n; ++apex) {
     bool valid = true;
     for (std::size_t i = 1; i + 1 < n && valid; ++i) {
-      const CavityEdge& e = edges[(apex + i) % n];
-      valid = orientation(mesh_, edges[apex].a, e.a, e.b) == Sign::kPositive;
+      const CavityEdge& e = polygon[(apex + i) % n];
+      valid = orientation(mesh_, polygon[apex].a, e.a, e.b) == Sign::kPositive;
     }
-    if (!valid) continue;
-    std::vector<CavityEdge> fan;
-    for (std::size_t i = 1; i + 1 < n; ++i) fan.push_back(edges[(apex + i) % n]);
-    const CavityEdge before = edges[(apex + n - 1) % n], after = edges[apex];
-    editor_.fill_star(edges[apex].a, cavity_.triangles.data(), n, fan.data(), fan.size(), false,
-                      false);
-    const auto close = [&](HalfEdge h, const CavityEdge& side) {
-      if (side.mate != kNoHalfEdge) mesh_.touch(triangle_of(side.mate));
-      mesh_.link(h, side.mate, side.off);
-      mesh_.triangle(triangle_of(h)).seg[local_of(h)] = side.seg;
-      if (side.seg != kNoSubsegment) {
-        mesh_.touch_subsegment(side.seg);
-        mesh_.subsegment(side.seg).half_edge = h;
-      }
-    };
-    close(3 * editor_.star().front() + 2, after);
-    close(3 * editor_.star().back() + 1, before);
-    mesh_.release_vertex(v);
-    finish_star();
-    return true;
+    if (valid) return apex;
   }
-  return false;
+  return std::nullopt;
+}
+
+// Triangulates a polygon from one of its vertices in place of `triangles`; appends to filled_.
+void StarSurgery::fill_fan(const std::vector<CavityEdge>& polygon,
+                           std::size_t apex,
+                           const CavityTriangle* triangles,
+                           std::size_t count) {
+  const std::size_t n = polygon.size();
+  fan_.clear();
+  for (std::size_t i = 1; i + 1 < n; ++i) fan_.push_back(polygon[(apex + i) % n]);
+  editor_.fill_star(polygon[apex].a, triangles, count, fan_.data(), fan_.size(), false, false);
+  const auto close = [&](HalfEdge h, const CavityEdge& side) {
+    if (side.mate != kNoHalfEdge) mesh_.touch(triangle_of(side.mate));
+    mesh_.link(h, side.mate, side.off);
+    mesh_.triangle(triangle_of(h)).seg[local_of(h)] = side.seg;
+    if (side.seg != kNoSubsegment) {
+      mesh_.touch_subsegment(side.seg);
+      mesh_.subsegment(side.seg).half_edge = h;
+    }
+  };
+  close(3 * editor_.star().front() + 2, polygon[apex]);
+  close(3 * editor_.star().back() + 1, polygon[(apex + n - 1) % n]);
+  filled_.insert(filled_.end(), editor_.star().begin(), editor_.star().end());
+}
+
+void StarSurgery::settle_filled() {
+  editor_.created() = filled_;
+  for (const TriangleId t : filled_) {
+    for (std::uint32_t j = 0; j < 3; ++j) editor_.queue_edge(3 * t + j);
+  }
+  editor_.legalise();
+}
+
+bool StarSurgery::remove(VertexId v) {
+  if (mesh_.kind(v) != VertexKind::kFree) return false;
+  if (!gather_union({{v, 0}}) || editor_.collect_region(union_, cavity_) != 1) return false;
+  if (touches(cavity_.edges, {{v, 0}}) || meets_itself(cavity_.edges, union_)) return false;
+  const auto apex = fan_apex(cavity_.edges);
+  if (!apex) return false;
+  filled_.clear();
+  fill_fan(cavity_.edges, *apex, cavity_.triangles.data(), cavity_.triangles.size());
+  mesh_.release_vertex(v);
+  settle_filled();
+  return true;
+}
+
+bool StarSurgery::unsplit(VertexId v) {
+  if (mesh_.kind(v) != VertexKind::kSegment || criteria_.is_shell_vertex(v)) return false;
+  if (!gather_union({{v, 0}}) || !segment_ends({{v, 0}}, ends_)) return false;
+  if (!collect_sides({{v, 0}}, ends_)) return false;
+  const SubsegmentId kept = ends_.chain.front();
+  const bool two_sided = cavity_.edges.size() > cavity_.right_edges;
+  std::optional<std::size_t> apex[2];
+  for (int side = 0; side < (two_sided ? 2 : 1); ++side) {
+    const auto begin = cavity_.edges.begin();
+    const auto split = begin + static_cast<std::ptrdiff_t>(cavity_.right_edges);
+    polygon_[side].assign(side == 0 ? begin : split, side == 0 ? split : cavity_.edges.end());
+    CavityEdge closing = polygon_[side].front();
+    closing.a = polygon_[side].back().b;
+    closing.b = polygon_[side].front().a;
+    closing.mate = kNoHalfEdge;
+    closing.off = 0;
+    closing.seg = kept;
+    polygon_[side].push_back(closing);
+    apex[side] = fan_apex(polygon_[side]);
+    if (!apex[side]) return false;
+  }
+  filled_.clear();
+  fill_fan(polygon_[0], *apex[0], cavity_.triangles.data(), cavity_.right_triangles);
+  if (two_sided) {
+    const HalfEdge left = mesh_.subsegment(kept).half_edge;
+    fill_fan(polygon_[1], *apex[1], cavity_.triangles.data() + cavity_.right_triangles,
+             cavity_.triangles.size() - cavity_.right_triangles);
+    mesh_.link(left, mesh_.subsegment(kept).half_edge, 0);
+  }
+  mesh_.release_subsegment(ends_.chain.back());
+  mesh_.release_vertex(v);
+  settle_filled();
+  return true;
 }
 
 }  // namespace symcell

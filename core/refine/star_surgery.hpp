@@ -33,10 +33,16 @@ class StarSurgery {
   // False if its star meets a copy of itself or has no valid triangulation by a fan.
   [[nodiscard]] bool remove(VertexId v);
 
+  // Removes a Steiner point from its segment, which becomes one subsegment there; else as `remove`.
+  [[nodiscard]] bool unsplit(VertexId v);
+
   // Fills `out` with the star edges of a cavity, lifted.
   void lift_edges(const std::vector<CavityEdge>& edges, std::vector<StarEdge>& out) const;
 
   [[nodiscard]] FeasibleRegion& region() { return region_; }
+
+  // More triangles than this at one vertex cannot all keep the angle bound.
+  [[nodiscard]] std::size_t most_edges() const { return region_.most_edges(); }
 
  private:
   struct SegmentEnds {
@@ -52,7 +58,13 @@ class StarSurgery {
   [[nodiscard]] bool collect_sides(std::initializer_list<Corner> removed,
                                    const SegmentEnds& ends);
   [[nodiscard]] bool keep_if_sizes_hold(bool transaction);
+  [[nodiscard]] std::optional<std::size_t> fan_apex(const std::vector<CavityEdge>& polygon) const;
+  void fill_fan(const std::vector<CavityEdge>& polygon,
+                std::size_t apex,
+                const CavityTriangle* triangles,
+                std::size_t count);
   void finish_star();
+  void settle_filled();
 
   DelaunayEditor& editor_;
   QuotientTriangulation& mesh_;
@@ -61,6 +73,8 @@ class StarSurgery {
   Cavity cavity_, side_;
   std::vector<CavityTriangle> union_;
   std::vector<StarEdge> star_edges_;
+  std::vector<CavityEdge> fan_, polygon_[2];
+  std::vector<TriangleId> filled_;
   SegmentEnds ends_;
 };
 

@@ -1,0 +1,56 @@
+// Fewer triangles at the same bounds: Steiner points are merged or removed while every star can be
+// kept good, and neighbours are moved to make room.
+//
+// Greedy rounds over all Steiner points; each step keeps the mesh constrained Delaunay and all
+// bounds, so the result is valid whenever the rounds stop. Steps, cheapest first: merge two adjacent
+// points into one; remove a point and mend what became bad by moving points near it, or take the
+// removal back from the journal; then move points to the middle of their feasible regions, which
+// opens the next round's chances.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/execution_context.hpp"
+#include "core/delaunay/insert.hpp"
+#include "core/refine/criteria.hpp"
+#include "core/refine/star_surgery.hpp"
+
+namespace symcell {
+
+struct CoarsenCounters {
+  std::uint64_t merged = 0;
+  std::uint64_t removed = 0;
+  std::uint64_t relocations = 0;
+};
+
+class Coarsener {
+ public:
+  Coarsener(DelaunayEditor& editor,
+            const Criteria& criteria,
+            StarSurgery& surgery,
+            ExecutionContext& context);
+
+  // Requires: no bad triangle.  Errors: cancel and time limit.
+  [[nodiscard]] Result<void> run();
+  [[nodiscard]] const CoarsenCounters& counters() const { return counters_; }
+
+ private:
+  [[nodiscard]] bool is_steiner(VertexId v) const;
+  [[nodiscard]] bool merge_with_neighbour(VertexId v);
+  [[nodiscard]] bool remove_and_mend(VertexId v);
+  [[nodiscard]] bool mend();
+  [[nodiscard]] std::size_t link_of(VertexId v, std::vector<Corner>& link) const;
+  void collect_bad(std::vector<TriangleId>& bad) const;
+
+  DelaunayEditor& editor_;
+  QuotientTriangulation& mesh_;
+  const Criteria& criteria_;
+  StarSurgery& surgery_;
+  ExecutionContext& context_;
+  CoarsenCounters counters_;
+  std::vector<Corner> link_, other_link_;
+  std::vector<TriangleId> bad_;
+};
+
+}  // namespace symcell
