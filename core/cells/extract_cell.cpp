@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <numbers>
-#include <queue>
+
 
 #include "core/tds/star.hpp"
 
@@ -103,41 +104,33 @@ class CellCutter {
 
   [[nodiscard]] static std::size_t idx(VertexId v) { return static_cast<std::size_t>(v); }
 
-  // Shortest path of edges from the inner to the outer end: fewest edges, then shortest.
+  // Shortest path of edges from the inner to the outer end: fewest edges, then (among those met in
+  // breadth-first order) shortest. Edges of the domain's boundary cost nothing, so this is a
+  // breadth-first search on a double-ended queue.
   void cut_component(TriangleId seed) {
-    struct Entry {
-      std::int32_t hops;
-      double length;
-      VertexId v;
-      bool operator<(const Entry& o) const {
-        if (hops != o.hops) return hops > o.hops;
-        if (length != o.length) return length > o.length;
-        return v > o.v;
-      }
-    };
     const std::int32_t id = component_[seed];
-    std::priority_queue<Entry> queue;
+    std::deque<VertexId> queue;
     if (distance_.empty()) distance_.assign(mesh_.vertex_slots(), {});
     for (TriangleId t = 0; t < mesh_.triangle_slots(); ++t) {
       if (component_[t] != id) continue;
       for (const VertexId v : mesh_.triangle(t).v) {
         if ((end_[idx(v)] & kInner) != 0 && distance_[idx(v)].hops == kUnset) {
           distance_[idx(v)].hops = 0;
-          queue.push({0, 0, v});
+          queue.push_back(v);
         }
       }
     }
     while (!queue.empty()) {
-      const Entry at = queue.top();
-      queue.pop();
-      Reach& here = distance_[idx(at.v)];
-      if (here.done) continue;
-      here.done = true;
-      if ((end_[idx(at.v)] & kOuter) != 0) {
-        trace(at.v);
+      const VertexId at = queue.front();
+      queue.pop_front();
+      if (distance_[idx(at)].done) continue;
+      distance_[idx(at)].done = true;
+      const Reach here = distance_[idx(at)];
+      if ((end_[idx(at)] & kOuter) != 0) {
+        trace(at);
         return;
       }
-      StarItem item = star_item(mesh_, mesh_.corner_of(at.v));
+      StarItem item = star_item(mesh_, mesh_.corner_of(at));
       to_star_begin(mesh_, item);
       const StarItem begin = item;
       // `leaves`: h starts at this vertex, so its triangle is on the left of the way out. An edge of
@@ -146,14 +139,19 @@ class CellCutter {
         Reach& there = distance_[idx(to.v)];
         if (there.done) return;
         const bool open = mesh_.triangle(triangle_of(h)).nb[local_of(h)] == kNoHalfEdge;
-        const std::int32_t hops = at.hops + (open ? 0 : 1);
+        const std::int32_t hops = here.hops + (open ? 0 : 1);
         const double len =
-            at.length +
-            (open ? 0 : distance(mesh_.point(at.v), mesh_.lift(to.v, to.k)));
+            here.length + (open ? 0 : distance(mesh_.point(at), mesh_.lift(to.v, to.k)));
         if (there.hops == kUnset || hops < there.hops ||
             (hops == there.hops && len < there.length)) {
-          there = {hops, len, h, at.v, leaves, false};
-          queue.push({hops, len, to.v});
+          const bool nearer = there.hops == kUnset || hops < there.hops;
+          there = {hops, len, h, at, leaves, false};
+          if (!nearer) return;  // queued already
+          if (open) {
+            queue.push_front(to.v);
+          } else {
+            queue.push_back(to.v);
+          }
         }
       };
       for (;;) {

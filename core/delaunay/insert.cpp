@@ -36,7 +36,7 @@ bool DelaunayEditor::in_conflict(TriangleId t, std::int32_t e, Point2 x) const {
   return certain_in_circle(p[0], p[1], p[2], x, radius) == Sign::kPositive;
 }
 
-void DelaunayEditor::add_side(HalfEdge h, std::int32_t e, Cavity& cavity) const {
+void DelaunayEditor::append_side(HalfEdge h, std::int32_t e, Cavity& cavity) const {
   const Triangle& tri = mesh_.triangle(triangle_of(h));
   const std::uint32_t j = local_of(h), a = next3(j), b = prev3(j);
   CavityEdge side;
@@ -74,7 +74,7 @@ void DelaunayEditor::grow(Point2 x, Cavity& cavity) {
         continue;
       }
     }
-    add_side(3 * w.t + w.j, w.e, cavity);
+    append_side(3 * w.t + w.j, w.e, cavity);
   }
 }
 
@@ -170,7 +170,7 @@ std::int32_t DelaunayEditor::collect_region(const std::vector<CavityTriangle>& r
         continue;
       }
     }
-    add_side(3 * w.t + w.j, w.e, cavity);
+    append_side(3 * w.t + w.j, w.e, cavity);
   }
   cavity.right_edges = cavity.edges.size();
   cavity.right_triangles = cavity.triangles.size();
@@ -294,7 +294,7 @@ VertexId DelaunayEditor::insert_in_cavity(TriangleId t,
   minimal_.simple = false;
   minimal_.triangles.assign(1, {t, 0});
   minimal_.edges.clear();
-  for (std::uint32_t j = 0; j < 3; ++j) add_side(3 * t + j, 0, minimal_);
+  for (std::uint32_t j = 0; j < 3; ++j) append_side(3 * t + j, 0, minimal_);
   if (!star_is_positive(x, minimal_)) return -1;
   const VertexId v = place(x, minimal_, kind, true);
   queue_star_sides();
@@ -321,15 +321,15 @@ VertexId DelaunayEditor::insert_on_edge(HalfEdge h,
   minimal_.simple = false;
   minimal_.triangles.assign(1, {t, 0});
   minimal_.edges.clear();
-  add_side(3 * t + next3(j), 0, minimal_);
-  add_side(3 * t + prev3(j), 0, minimal_);
+  append_side(3 * t + next3(j), 0, minimal_);
+  append_side(3 * t + prev3(j), 0, minimal_);
   minimal_.right_edges = 2;
   if (two_sided) {
     const std::int32_t e = mesh_.triangle(t).off[j];
     const TriangleId u = triangle_of(g);
     minimal_.triangles.push_back({u, e});
-    add_side(3 * u + next3(local_of(g)), e, minimal_);
-    add_side(3 * u + prev3(local_of(g)), e, minimal_);
+    append_side(3 * u + next3(local_of(g)), e, minimal_);
+    append_side(3 * u + prev3(local_of(g)), e, minimal_);
   }
   if (!star_is_positive(x, minimal_)) return -1;
   const VertexId v = place(x, minimal_, kind, two_sided);

@@ -63,6 +63,9 @@ class DelaunayEditor {
   [[nodiscard]] std::int32_t collect_region(const std::vector<CavityTriangle>& region,
                                             Cavity& cavity);
 
+  // Appends the side h of a cavity triangle at exponent e.
+  void append_side(HalfEdge h, std::int32_t e, Cavity& cavity) const;
+
   // Insert x after a dry run. Returns the vertex, -1 if x cannot be placed (coincides with a vertex
   // or degenerates a triangle within rounding; nothing is changed then). `kind` as for add_vertex.
   // On success `created()` lists the triangles that are new or changed, without repeats that matter.
@@ -99,7 +102,6 @@ class DelaunayEditor {
   void start(Cavity& cavity);
   void visit(TriangleId t, std::int32_t e, Cavity& cavity);
   void grow(Point2 x, Cavity& cavity);
-  void add_side(HalfEdge h, std::int32_t e, Cavity& cavity) const;
   [[nodiscard]] bool in_conflict(TriangleId t, std::int32_t e, Point2 x) const;
   [[nodiscard]] bool star_is_positive(Point2 x, const Cavity& cavity) const;
   void check_outside(Cavity& cavity) const;

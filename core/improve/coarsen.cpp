@@ -99,8 +99,8 @@ bool Coarsener::merge_with_neighbour(VertexId v) {
     if (sum > most) continue;
     // The one on a segment, if any, goes first; its frame is the one used.
     const bool ok = v_free && !w_free
-                        ? surgery_.merge({{w.v, 0}, {v, mesh_.subtract(0, w.k)}})
-                        : surgery_.merge({{v, 0}, w});
+                        ? surgery_.merge({w.v, 0}, {v, mesh_.subtract(0, w.k)})
+                        : surgery_.merge({v, 0}, w);
     if (ok) return true;
   }
   return false;

@@ -66,33 +66,52 @@ bool FeasibleRegion::clip(Point2 normal, double offset) {
   return polygon_.size() >= 3;
 }
 
-// The square round the smallest disc: the tightest start there is.
-bool FeasibleRegion::start_box(const std::vector<StarEdge>& edges, Point2 origin) {
+// Starts with the shortest edge, whose region is the smallest: its wedge, cut off where its disc
+// ends. The rest follows longest first, because long edges keep x away and so tell soonest that
+// nothing is left.
+bool FeasibleRegion::start(const std::vector<StarEdge>& edges, Point2 origin) {
   discs_.clear();
-  std::size_t smallest = 0;
-  for (const StarEdge& e : edges) {
-    discs_.push_back(disc_of(e));
-    discs_.back().centre = discs_.back().centre - origin;
-    if (discs_.back().radius < discs_[smallest].radius) smallest = discs_.size() - 1;
+  order_.clear();
+  std::size_t shortest = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    Disc d = disc_of(edges[i]);
+    d.centre = d.centre - origin;
+    discs_.push_back(d);
+    if (d.radius < discs_[shortest].radius) shortest = i;
   }
-  const Disc box = discs_[smallest];
-  for (const Disc& d : discs_) {
-    const double reach = d.radius + box.radius;
-    if (squared_distance(d.centre, box.centre) > reach * reach) return false;
+  const Disc least = discs_[shortest];
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const double reach = discs_[i].radius + least.radius;
+    if (squared_distance(discs_[i].centre, least.centre) > reach * reach) return false;
+    if (i == shortest) continue;
+    std::size_t at = order_.size();
+    order_.push_back(i);
+    while (at > 0 && discs_[order_[at - 1]].radius < discs_[i].radius) {
+      order_[at] = order_[at - 1];
+      --at;
+    }
+    order_[at] = i;
   }
+  const StarEdge& e = edges[shortest];
+  const Point2 d = e.b - e.a, n{-d.y, d.x}, middle = 0.5 * (e.a + e.b) - origin;
+  // In units of the edge: the wedge's apex, its sides where the disc ends, the top of the disc.
+  const double tangent = sine_ / cosine_, r = half_cosecant_;
+  const double low = (r + 0.5) * tangent, high = half_cotangent_ + r;
+  polygon_.assign({middle + 0.5 * tangent * n,
+                   middle + r * d + low * n,
+                   middle + r * d + high * n,
+                   middle - r * d + high * n,
+                   middle - r * d + low * n});
+  if (e.max_area < kInfinity && !clip(n, dot(n, middle) + 2 * e.max_area)) return false;
   if (max_edge2_ < kInfinity) {
-    for (const StarEdge& e : edges) discs_.push_back({e.a - origin, max_edge_});
+    for (const StarEdge& s : edges) discs_.push_back({s.a - origin, max_edge_});
   }
-  const double r = box.radius;
-  polygon_.assign({{box.centre.x - r, box.centre.y - r},
-                   {box.centre.x + r, box.centre.y - r},
-                   {box.centre.x + r, box.centre.y + r},
-                   {box.centre.x - r, box.centre.y + r}});
   return true;
 }
 
 bool FeasibleRegion::clip_by_wedges(const std::vector<StarEdge>& edges, Point2 origin) {
-  for (const StarEdge& e : edges) {
+  for (const std::size_t i : order_) {
+    const StarEdge& e = edges[i];
     const Point2 a = e.a - origin, b = e.b - origin;
     const Point2 d = b - a;
     // Right normals of the rays at alpha from a (along d) and, mirrored, from b (along -d).
@@ -112,7 +131,7 @@ std::optional<Point2> FeasibleRegion::find(const std::vector<StarEdge>& edges) {
   if (edges.size() > most_edges_ || edges.size() < 3) return std::nullopt;
   // Near the origin, differences keep their digits.
   const Point2 origin = edges.front().a;
-  if (!start_box(edges, origin) || !clip_by_wedges(edges, origin)) return std::nullopt;
+  if (!start(edges, origin) || !clip_by_wedges(edges, origin)) return std::nullopt;
   for (int cut = 0; cut < kMaxCuts; ++cut) {
     const Point2 x = centroid(polygon_);
     double worst = 0;

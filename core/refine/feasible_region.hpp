@@ -49,7 +49,7 @@ class FeasibleRegion {
   // Keeps the part of the polygon with dot(normal, x) <= offset; false if nothing is left.
   bool clip(Point2 normal, double offset);
   [[nodiscard]] bool clip_by_wedges(const std::vector<StarEdge>& edges, Point2 origin);
-  [[nodiscard]] bool start_box(const std::vector<StarEdge>& edges, Point2 origin);
+  [[nodiscard]] bool start(const std::vector<StarEdge>& edges, Point2 origin);
 
   double alpha_;
   double sine_, cosine_, half_cotangent_, half_cosecant_;
@@ -58,6 +58,7 @@ class FeasibleRegion {
   std::vector<Point2> polygon_, next_;
   std::vector<double> side_;
   std::vector<Disc> discs_;
+  std::vector<std::size_t> order_;
 };
 
 }  // namespace symcell

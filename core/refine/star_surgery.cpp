@@ -81,11 +81,67 @@ bool meets_itself(const std::vector<CavityEdge>& edges, const std::vector<Cavity
 
 }  // namespace
 
+// Appends the star of an inner vertex to cavity_, counter-clockwise; of the two triangles at edge
+// v-other only if `first`, and without sides.
+bool StarSurgery::append_star(Corner v, const Corner* other, bool first) {
+  StarItem item = star_item(mesh_, mesh_.corner_of(v.v));
+  item.e = mesh_.add(item.e, v.k);
+  if (other != nullptr) {
+    // Begin at the triangle (v, other, .).
+    const StarItem start = item;
+    while (!(star_corner(mesh_, item, 1) == *other)) {
+      if (!rotate_ccw(mesh_, item) || (item.t == start.t && item.i == start.i)) return false;
+    }
+  }
+  const StarItem begin = item;
+  do {
+    const bool shared = other != nullptr && (star_corner(mesh_, item, 1) == *other ||
+                                             star_corner(mesh_, item, 2) == *other);
+    if (!shared || first) cavity_.triangles.push_back({item.t, item.e});
+    if (!shared) editor_.append_side(3 * item.t + item.i, item.e, cavity_);
+    if (cavity_.edges.size() > region_.most_edges() || !rotate_ccw(mesh_, item)) return false;
+  } while (item.t != begin.t || item.i != begin.i);
+  return item.e == begin.e;  // not so round the centre only
+}
+
+// Whether a triangle of the cavity, or the triangle behind one of its sides, is another copy of one
+// of its triangles. In one frame throughout that cannot be.
+bool StarSurgery::cavity_meets_itself() const {
+  const std::int32_t e = cavity_.triangles.front().e;
+  bool uniform = true;
+  for (const CavityTriangle& c : cavity_.triangles) uniform = uniform && c.e == e;
+  for (const CavityEdge& side : cavity_.edges) {
+    uniform = uniform && (side.mate == kNoHalfEdge || side.off == e);
+  }
+  if (uniform) return false;
+  for (std::size_t i = 0; i < cavity_.triangles.size(); ++i) {
+    const TriangleId t = cavity_.triangles[i].t;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (cavity_.triangles[j].t == t) return true;
+    }
+    for (const CavityEdge& side : cavity_.edges) {
+      if (side.mate != kNoHalfEdge && triangle_of(side.mate) == t) return true;
+    }
+  }
+  return false;
+}
+
+bool StarSurgery::gather_cavity(Corner v) {
+  cavity_.triangles.clear();
+  cavity_.edges.clear();
+  return append_star(v, nullptr, true) && !cavity_meets_itself() && !touches(cavity_.edges, {v});
+}
+
+bool StarSurgery::gather_cavity(Corner v, Corner w) {
+  cavity_.triangles.clear();
+  cavity_.edges.clear();
+  return append_star(v, &w, true) && append_star(w, &v, false) && !cavity_meets_itself() &&
+         !touches(cavity_.edges, {v, w});
+}
+
 bool StarSurgery::relocate(VertexId v) {
   if (mesh_.kind(v) == VertexKind::kSegment) return merge_on_segment({{v, 0}});
-  if (mesh_.kind(v) != VertexKind::kFree) return false;
-  if (!gather_union({{v, 0}}) || editor_.collect_region(union_, cavity_) != 1) return false;
-  if (touches(cavity_.edges, {{v, 0}})) return false;
+  if (mesh_.kind(v) != VertexKind::kFree || !gather_cavity({v, 0})) return false;
   lift_edges(cavity_.edges, star_edges_);
   const auto x = region_.find(star_edges_);
   if (!x) return false;
@@ -102,13 +158,10 @@ bool StarSurgery::relocate(VertexId v) {
   return keep_if_sizes_hold(transaction);
 }
 
-bool StarSurgery::merge(std::initializer_list<Corner> removed) {
-  for (const Corner& c : removed) {
-    const VertexKind kind = mesh_.kind(c.v);
-    if (kind == VertexKind::kInput || kind == VertexKind::kDeleted) return false;
-  }
-  return mesh_.kind(removed.begin()->v) == VertexKind::kSegment ? merge_on_segment(removed)
-                                                                : merge_free(removed);
+bool StarSurgery::merge(Corner kept, Corner removed) {
+  if (mesh_.kind(kept.v) == VertexKind::kSegment) return merge_on_segment({kept, removed});
+  return mesh_.kind(kept.v) == VertexKind::kFree && mesh_.kind(removed.v) == VertexKind::kFree &&
+         merge_free(kept, removed);
 }
 
 bool StarSurgery::keep_if_sizes_hold(bool transaction) {
@@ -133,29 +186,19 @@ void StarSurgery::finish_star() {
   editor_.legalise();
 }
 
-bool StarSurgery::merge_free(std::initializer_list<Corner> removed) {
-  for (const Corner& c : removed) {
-    if (mesh_.kind(c.v) != VertexKind::kFree) return false;
-  }
-  if (!gather_union(removed)) return false;
-  if (editor_.collect_region(union_, cavity_) != static_cast<std::int32_t>(removed.size()) ||
-      touches(cavity_.edges, removed) || meets_itself(cavity_.edges, union_)) {
-    return false;
-  }
+bool StarSurgery::merge_free(Corner kept, Corner removed) {
+  if (!gather_cavity(kept, removed)) return false;
   lift_edges(cavity_.edges, star_edges_);
   const auto x = region_.find(star_edges_);
   if (!x) return false;
   // Angles survive the flips that follow, areas and lengths need not.
   const bool transaction = criteria_.has_size_bound() && !mesh_.in_transaction();
   if (transaction) mesh_.begin();
-  const Corner kept = *removed.begin();
   mesh_.touch_vertex(kept.v);
   mesh_.move_vertex(kept.v, *x);
   editor_.fill_star(kept, cavity_.triangles.data(), cavity_.triangles.size(),
                     cavity_.edges.data(), cavity_.edges.size(), true, false);
-  for (const Corner& c : removed) {
-    if (c.v != kept.v) mesh_.release_vertex(c.v);
-  }
+  mesh_.release_vertex(removed.v);
   finish_star();
   return keep_if_sizes_hold(transaction);
 }
@@ -372,8 +415,7 @@ void StarSurgery::settle_filled() {
 
 bool StarSurgery::remove(VertexId v) {
   if (mesh_.kind(v) != VertexKind::kFree) return false;
-  if (!gather_union({{v, 0}}) || editor_.collect_region(union_, cavity_) != 1) return false;
-  if (touches(cavity_.edges, {{v, 0}}) || meets_itself(cavity_.edges, union_)) return false;
+  if (!gather_cavity({v, 0})) return false;
   const auto apex = fan_apex(cavity_.edges);
   if (!apex) return false;
   filled_.clear();

@@ -24,10 +24,9 @@ class StarSurgery {
   // editor.created() then lists what changed, the star included.
   [[nodiscard]] bool relocate(VertexId v);
 
-  // Replaces the Steiner points `removed` (in one frame; adjacent, the first one is kept and moved)
-  // by one point with a good star. If any lies on a segment all that do must lie on one segment,
-  // next to each other, the first one among them.
-  [[nodiscard]] bool merge(std::initializer_list<Corner> removed);
+  // Replaces two adjacent Steiner points (corners in one frame, kept.k = 0) by one with a good star:
+  // `kept` is moved, `removed` is gone. If one lies on a segment, `kept` does.
+  [[nodiscard]] bool merge(Corner kept, Corner removed);
 
   // Removes a free vertex whatever the quality of what remains, keeping the mesh Delaunay.
   // False if its star meets a copy of itself or has no valid triangulation by a fan.
@@ -50,10 +49,14 @@ class StarSurgery {
     std::vector<SubsegmentId> chain;
   };
 
+  [[nodiscard]] bool gather_cavity(Corner v);
+  [[nodiscard]] bool gather_cavity(Corner v, Corner w);
+  [[nodiscard]] bool append_star(Corner v, const Corner* other, bool first);
+  [[nodiscard]] bool cavity_meets_itself() const;
   [[nodiscard]] bool gather_star(Corner v, std::vector<CavityTriangle>& region) const;
   [[nodiscard]] bool gather_union(std::initializer_list<Corner> removed);
   [[nodiscard]] bool segment_ends(std::initializer_list<Corner> removed, SegmentEnds& ends) const;
-  [[nodiscard]] bool merge_free(std::initializer_list<Corner> removed);
+  [[nodiscard]] bool merge_free(Corner kept, Corner removed);
   [[nodiscard]] bool merge_on_segment(std::initializer_list<Corner> removed);
   [[nodiscard]] bool collect_sides(std::initializer_list<Corner> removed,
                                    const SegmentEnds& ends);
