@@ -1,0 +1,147 @@
+// HTTP itself: methods, unknown paths, request ids, framing, hostile clients.
+#include "tests/unit/server/http_fixture.hpp"
+#include "tests/unit/server/raw_connection.hpp"
+
+namespace symcell::server::test {
+namespace {
+
+class ProtocolHttpTest : public HttpTest {
+ protected:
+  [[nodiscard]] std::string exchange(const std::string& request) const {
+    RawConnection connection(port());
+    connection.send(request);
+    return connection.receive_all();
+  }
+};
+
+TEST_F(ProtocolHttpTest, UnknownPathsAreProblems) {
+  EXPECT_EQ(problem_of(client().Get("/nothing"), 404)["instance"], "/nothing");
+  problem_of(client().Get("/v1/jobs/"), 404);
+  problem_of(client().Post("/nothing", std::string(100'000, 'x'), "text/plain"), 404);
+}
+
+TEST_F(ProtocolHttpTest, OtherMethodsAreToldWhatIsAllowed) {
+  const auto answer = client().Put("/v1/jobs", "x", "text/plain");
+  problem_of(answer, 405);
+  EXPECT_EQ(answer->get_header_value("Allow"), "POST, GET, HEAD, OPTIONS");
+  problem_of(client().Delete("/healthz"), 405);
+  problem_of(client().Post("/metrics", "x", "text/plain"), 405);
+  const auto options = client().Options("/v1/inspect");
+  ASSERT_TRUE(options);
+  EXPECT_EQ(options->status, 204);
+  EXPECT_EQ(options->get_header_value("Allow"), "POST, OPTIONS");
+}
+
+TEST_F(ProtocolHttpTest, RequestIdsAreKeptIfTheyAreHarmless) {
+  EXPECT_EQ(
+      client().Get("/healthz", {{"X-Request-Id", "abc-1.2_3"}})->get_header_value("X-Request-Id"),
+      "abc-1.2_3");
+  const std::string made =
+      client().Get("/healthz", {{"X-Request-Id", "a b"}})->get_header_value("X-Request-Id");
+  EXPECT_EQ(made.size(), 16U);
+  EXPECT_FALSE(client().Get("/nothing")->get_header_value("X-Request-Id").empty());
+}
+
+TEST_F(ProtocolHttpTest, AnswersCarrySecurityHeadersAndNoCors) {
+  const auto answer = client().Get("/", {{"Origin", "http://elsewhere.example"}});
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->get_header_value("X-Content-Type-Options"), "nosniff");
+  EXPECT_FALSE(answer->get_header_value("Content-Security-Policy").empty());
+  EXPECT_FALSE(answer->has_header("Access-Control-Allow-Origin"));
+}
+
+TEST_F(ProtocolHttpTest, AConnectionServesSeveralRequests) {
+  RawConnection connection(port());
+  for (int i = 0; i < 3; ++i) {
+    connection.send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
+    EXPECT_NE(connection.receive_until("ok\n").find("200 OK"), std::string::npos) << i;
+  }
+}
+
+TEST_F(ProtocolHttpTest, ABodyNobodyReadEndsTheConnection) {
+  // Otherwise its bytes would be taken for the next request.
+  const std::string hidden = "GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n";
+  const std::string answer = exchange("POST /nothing HTTP/1.1\r\nHost: x\r\nContent-Length: " +
+                                      std::to_string(hidden.size()) + "\r\n\r\n" + hidden);
+  EXPECT_TRUE(answer.starts_with("HTTP/1.1 404 ")) << answer;
+  EXPECT_EQ(answer.find("200 OK"), std::string::npos) << answer;
+}
+
+TEST_F(ProtocolHttpTest, AmbiguousFramingIsRefused) {
+  const std::string head = "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: text/plain\r\n";
+  for (const char* framing : {"Content-Length: 5\r\nTransfer-Encoding: chunked\r\n",
+                              "Content-Length: 5\r\nContent-Length: 6\r\n",
+                              "Content-Length: abc\r\n", "Content-Length: -1\r\n"}) {
+    const std::string answer = exchange(head + framing + "\r\nhello");
+    EXPECT_TRUE(answer.starts_with("HTTP/1.1 400 ")) << framing << answer;
+  }
+  const std::string unknown = exchange(head + "Transfer-Encoding: gzip\r\n\r\nhello");
+  EXPECT_TRUE(unknown.starts_with("HTTP/1.1 501 ")) << unknown;
+}
+
+TEST_F(ProtocolHttpTest, GarbageAndEndlessHeadersAreRefused) {
+  EXPECT_TRUE(exchange("this is not http\r\n\r\n").starts_with("HTTP/1.1 400 "));
+  EXPECT_TRUE(exchange("GET / HTTP/1.1\r\nX: " + std::string(200'000, 'x')).find("200 OK") ==
+              std::string::npos);
+  EXPECT_TRUE(exchange("GET /" + std::string(20'000, 'x') + " HTTP/1.1\r\n\r\n")
+                  .starts_with("HTTP/1.1 414 "));
+  std::string many = "GET / HTTP/1.1\r\n";
+  for (int i = 0; i < 10'000; ++i) many += "X-Header: some value\r\n";
+  EXPECT_EQ(exchange(many + "\r\n").find("200 OK"), std::string::npos);
+  EXPECT_EQ(client().Get("/healthz")->status, 200);
+}
+
+TEST_F(ProtocolHttpTest, IdleConnectionsMakeWay) {
+  // More than there are threads; each has been served once and keeps its connection.
+  std::vector<std::unique_ptr<RawConnection>> idle;
+  for (int i = 0; i < 20; ++i) {
+    idle.push_back(std::make_unique<RawConnection>(port()));
+    idle.back()->send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
+  }
+  for (auto& connection : idle) {
+    EXPECT_NE(connection->receive_until("ok\n").find("200 OK"), std::string::npos);
+  }
+}
+
+TEST_F(ProtocolHttpTest, ConnectionsBeyondTheQueueAreRefusedAtOnce) {
+  std::vector<std::unique_ptr<RawConnection>> slow;
+  std::size_t refused = 0;
+  for (int i = 0; i < 60; ++i) {
+    slow.push_back(std::make_unique<RawConnection>(port()));
+    slow.back()->send("GET /healthz HTTP/1.1\r\n");  // and never finishes
+  }
+  ASSERT_TRUE(eventually([&] {
+    RawConnection probe(port());
+    probe.send("GET /healthz HTTP/1.1\r\nConnection: close\r\n\r\n");
+    if (probe.receive_until("\r\n").starts_with("HTTP/1.1 503 ")) ++refused;
+    return refused > 0;
+  }));
+}
+
+TEST_F(ProtocolHttpTest, StopDoesNotWaitForIdleConnections) {
+  RawConnection idle(port());
+  idle.send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
+  ASSERT_NE(idle.receive_until("ok\n").find("200"), std::string::npos);
+  const auto begin = std::chrono::steady_clock::now();
+  stop();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(3));
+}
+
+class CorsHttpTest : public HttpTest {
+ protected:
+  void configure(ServiceSettings& settings) override {
+    settings.http.cors_origin = "https://viewer.example";
+  }
+};
+
+TEST_F(CorsHttpTest, TheConfiguredOriginMayCall) {
+  const auto answer = client().Options("/v1/jobs");
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 204);
+  EXPECT_EQ(answer->get_header_value("Access-Control-Allow-Origin"), "https://viewer.example");
+  EXPECT_NE(answer->get_header_value("Access-Control-Allow-Methods").find("POST"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace symcell::server::test

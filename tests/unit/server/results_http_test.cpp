@@ -1,0 +1,122 @@
+// Results: formats, negotiation, caching, compression.
+#include "server/http/gzip.hpp"
+#include "tests/unit/server/http_fixture.hpp"
+#include "tests/unit/server/raw_connection.hpp"
+
+namespace symcell::server::test {
+namespace {
+
+std::string gunzip(const std::string& packed) {
+  std::string bytes;
+  GzipInflater inflater([&](std::string_view piece) {
+    bytes.append(piece);
+    return true;
+  });
+  EXPECT_TRUE(inflater.write(packed) && inflater.complete());
+  return bytes;
+}
+
+class ResultsHttpTest : public HttpTest {
+ protected:
+  void SetUp() override {
+    start();
+    path_ = "/v1/jobs/" + std::string(submit()["id"]);
+    ASSERT_TRUE(reaches(path_.substr(9), "succeeded"));
+  }
+
+  std::string path_;
+};
+
+TEST_F(ResultsHttpTest, TheFormatComesFromTheQueryOrFromAccept) {
+  const auto standard = client().Get(path_ + "/cell");
+  ASSERT_TRUE(standard);
+  EXPECT_EQ(standard->status, 200);
+  EXPECT_EQ(standard->get_header_value("Content-Type"), "application/vnd.vtk.vtu+xml");
+  EXPECT_EQ(standard->get_header_value("Content-Disposition"), "attachment; filename=\"cell.vtu\"");
+  const auto json = client().Get(path_ + "/full", {{"Accept", "application/json"}});
+  ASSERT_TRUE(json);
+  EXPECT_EQ(nlohmann::json::parse(json->body)["fold"], 6);
+  const auto svg = client().Get(path_ + "/full?format=svg");
+  ASSERT_TRUE(svg);
+  EXPECT_EQ(svg->get_header_value("Content-Type"), "image/svg+xml");
+  const auto msh = client().Get(path_ + "/cell?format=msh");
+  ASSERT_TRUE(msh);
+  EXPECT_TRUE(msh->body.starts_with("$MeshFormat"));
+}
+
+TEST_F(ResultsHttpTest, VtuEncodingsAreChosenByTheQuery) {
+  const auto ascii = client().Get(path_ + "/cell?encoding=ascii");
+  ASSERT_TRUE(ascii);
+  EXPECT_NE(ascii->body.find("ascii"), std::string::npos);
+  EXPECT_EQ(client().Get(path_ + "/cell?encoding=zlib")->status, 200);
+  problem_of(client().Get(path_ + "/cell?encoding=rot13"), 400);
+}
+
+TEST_F(ResultsHttpTest, WhatIsNotOfferedIsRefused) {
+  problem_of(client().Get(path_ + "/cell?format=dxf"), 400);
+  problem_of(client().Get(path_ + "/cell", {{"Accept", "image/png"}}), 406);
+  problem_of(client().Get(path_ + "/statistics", {{"Accept", "text/html"}}), 406);
+}
+
+TEST_F(ResultsHttpTest, AnUnchangedResultIsNotSentAgain) {
+  const auto first = client().Get(path_ + "/cell");
+  const std::string etag = first->get_header_value("ETag");
+  EXPECT_TRUE(etag.starts_with('"'));
+  const auto second = client().Get(path_ + "/cell", {{"If-None-Match", etag}});
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->status, 304);
+  EXPECT_TRUE(second->body.empty());
+  EXPECT_EQ(client().Get(path_ + "/full", {{"If-None-Match", etag}})->status, 200);
+  EXPECT_NE(client().Get(path_ + "/cell?format=json")->get_header_value("ETag"), etag);
+}
+
+TEST_F(ResultsHttpTest, GzipHoldsTheSameBytesUnderAnotherTag) {
+  auto plain_client = client();
+  plain_client.set_decompress(false);
+  for (const char* what : {"/cell?format=json", "/full", "/statistics", "/model"}) {
+    const auto plain = plain_client.Get(path_ + what);
+    const auto packed = plain_client.Get(path_ + what, {{"Accept-Encoding", "gzip"}});
+    ASSERT_TRUE(plain && packed);
+    EXPECT_EQ(packed->get_header_value("Content-Encoding"), "gzip");
+    EXPECT_EQ(gunzip(packed->body), plain->body) << what;
+    EXPECT_NE(packed->get_header_value("ETag"), plain->get_header_value("ETag"));
+  }
+}
+
+TEST_F(ResultsHttpTest, HeadTellsTheSameHeadersWithoutABody) {
+  const auto head = client().Head(path_ + "/cell?format=json");
+  const auto get = client().Get(path_ + "/cell?format=json");
+  ASSERT_TRUE(head && get);
+  EXPECT_EQ(head->status, 200);
+  EXPECT_TRUE(head->body.empty());
+  for (const char* name : {"Content-Type", "ETag", "Content-Disposition"}) {
+    EXPECT_EQ(head->get_header_value(name), get->get_header_value(name)) << name;
+  }
+}
+
+TEST_F(ResultsHttpTest, OldClientsGetTheBodyWithoutChunks) {
+  RawConnection connection(port());
+  connection.send("GET " + path_ + "/statistics HTTP/1.0\r\n\r\n");
+  const std::string answer = connection.receive_all();
+  EXPECT_EQ(answer.find("chunked"), std::string::npos) << answer;
+  EXPECT_TRUE(answer.ends_with("\r\n\r\n{\"cell\": {\"elements\": 12}}\n")) << answer;
+}
+
+TEST_F(ResultsHttpTest, ADamagedArchiveIsAnErrorAndNoBrokenDownload) {
+  symcell::test::write_file(service_->jobs().files().cell(path_.substr(9)), "damaged");
+  EXPECT_EQ(problem_of(client().Get(path_ + "/cell"), 500)["code"], "internal");
+}
+
+TEST_F(ResultsHttpTest, UnfinishedAndFailedJobsHaveNoResults) {
+  engine_.close_gate();
+  const std::string running = "/v1/jobs/" + std::string(submit()["id"]);
+  const auto early = client().Get(running + "/cell");
+  EXPECT_EQ(problem_of(early, 409)["code"], "not_finished");
+  EXPECT_EQ(client().Get(running + "/model")->status, 200);
+  client().Post(running + "/cancel");
+  ASSERT_TRUE(reaches(running.substr(9), "cancelled"));
+  EXPECT_EQ(problem_of(client().Get(running + "/statistics"), 409)["code"], "no_result");
+}
+
+}  // namespace
+}  // namespace symcell::server::test

@@ -1,0 +1,151 @@
+#include "server/jobs/sqlite_job_store.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/test_files.hpp"
+
+namespace symcell::server {
+namespace {
+
+Job new_job(const std::string& id) {
+  Job job;
+  job.id = id;
+  job.created_ms = 1000;
+  job.model_format = ModelFormat::kPoly;
+  job.model_name = "part.poly";
+  job.options_json = "{\"fold\":3}";
+  job.model_bytes = 10;
+  return job;
+}
+
+class SqliteJobStoreTest : public ::testing::Test {
+ protected:
+  symcell::test::TemporaryFolder folder_;
+  SqliteJobStore store_{folder_ / "jobs.sqlite"};
+};
+
+TEST_F(SqliteJobStoreTest, AJobComesBackAsItWasStored) {
+  store_.insert(new_job("a"), std::nullopt);
+  const auto job = store_.find("a");
+  ASSERT_TRUE(job);
+  EXPECT_EQ(job->state, JobState::kQueued);
+  EXPECT_EQ(job->created_ms, 1000);
+  EXPECT_FALSE(job->started_ms);
+  EXPECT_EQ(job->model_format, ModelFormat::kPoly);
+  EXPECT_EQ(job->model_name, "part.poly");
+  EXPECT_EQ(job->options_json, "{\"fold\":3}");
+  EXPECT_EQ(job->model_bytes, 10);
+  EXPECT_FALSE(store_.find("b"));
+}
+
+TEST_F(SqliteJobStoreTest, EventsChangeStateAndTimes) {
+  store_.insert(new_job("a"), std::nullopt);
+  EXPECT_EQ(store_.apply("a", JobEvent::kStart, {.time_ms = 2000})->started_ms, 2000);
+  const auto failed = store_.apply(
+      "a", JobEvent::kFail, {.time_ms = 3000, .error_code = "time_limit", .error_json = "{}"});
+  ASSERT_TRUE(failed);
+  EXPECT_EQ(failed->state, JobState::kFailed);
+  const auto stored = store_.find("a");
+  EXPECT_EQ(stored->started_ms, 2000);
+  EXPECT_EQ(stored->finished_ms, 3000);
+  EXPECT_EQ(stored->error_code, "time_limit");
+}
+
+TEST_F(SqliteJobStoreTest, ForbiddenEventsChangeNothing) {
+  store_.insert(new_job("a"), std::nullopt);
+  EXPECT_FALSE(store_.apply("a", JobEvent::kSucceed, {.time_ms = 1}));
+  EXPECT_FALSE(store_.apply("unknown", JobEvent::kStart, {.time_ms = 1}));
+  EXPECT_EQ(store_.find("a")->state, JobState::kQueued);
+}
+
+TEST_F(SqliteJobStoreTest, CrashesAreCountedAcrossRequeues) {
+  store_.insert(new_job("a"), std::nullopt);
+  for (int i = 1; i <= 2; ++i) {
+    store_.apply("a", JobEvent::kStart, {.time_ms = 1});
+    EXPECT_EQ(store_.apply("a", JobEvent::kRequeue, {.time_ms = 1, .crashed = true})->crashes, i);
+  }
+  store_.apply("a", JobEvent::kStart, {.time_ms = 1});
+  const auto orderly = store_.apply("a", JobEvent::kRequeue, {.time_ms = 1});
+  EXPECT_EQ(orderly->crashes, 2);
+  EXPECT_FALSE(orderly->started_ms);
+}
+
+TEST_F(SqliteJobStoreTest, TheSameKeyGivesTheSameJobOrAConflict) {
+  const IdempotencyKey key{"k", "digest"};
+  EXPECT_FALSE(store_.find_key(key));
+  EXPECT_EQ(store_.insert(new_job("a"), key).result, InsertResult::kInserted);
+  const auto replayed = store_.insert(new_job("b"), key);
+  EXPECT_EQ(replayed.result, InsertResult::kReplayed);
+  EXPECT_EQ(replayed.job.id, "a");
+  EXPECT_FALSE(store_.find("b"));
+  EXPECT_EQ(store_.insert(new_job("c"), IdempotencyKey{"k", "other"}).result,
+            InsertResult::kConflict);
+  EXPECT_EQ(store_.find_key({"k", "other"})->result, InsertResult::kConflict);
+}
+
+TEST_F(SqliteJobStoreTest, AnErasedJobFreesItsKey) {
+  const IdempotencyKey key{"k", "digest"};
+  store_.insert(new_job("a"), key);
+  EXPECT_TRUE(store_.erase("a"));
+  EXPECT_FALSE(store_.erase("a"));
+  EXPECT_FALSE(store_.find_key(key));
+}
+
+TEST_F(SqliteJobStoreTest, ListsNewestFirstByStateInPages) {
+  for (const char* id : {"a", "b", "c", "d"}) store_.insert(new_job(id), std::nullopt);
+  store_.apply("b", JobEvent::kCancel, {.time_ms = 1});
+  JobFilter filter;
+  filter.limit = 2;
+  auto page = store_.list(filter);
+  ASSERT_EQ(page.size(), 2U);
+  EXPECT_EQ(page[0].id, "d");
+  EXPECT_EQ(page[1].id, "c");
+  filter.before_sequence = page[1].sequence;
+  page = store_.list(filter);
+  ASSERT_EQ(page.size(), 2U);
+  EXPECT_EQ(page[0].id, "b");
+  EXPECT_EQ(page[1].id, "a");
+  filter = {};
+  filter.state = JobState::kCancelled;
+  EXPECT_EQ(store_.list(filter).size(), 1U);
+  EXPECT_EQ(store_.unfinished().front().id, "a");
+  EXPECT_EQ(store_.unfinished().size(), 3U);
+  EXPECT_EQ(store_.oldest_finished(10).size(), 1U);
+}
+
+TEST_F(SqliteJobStoreTest, TotalsCountStatesAndBytes) {
+  store_.insert(new_job("a"), std::nullopt);
+  store_.insert(new_job("b"), std::nullopt);
+  store_.apply("b", JobEvent::kStart, {.time_ms = 1});
+  store_.apply("b", JobEvent::kSucceed, {.time_ms = 2, .result_bytes = 5});
+  const StoreTotals totals = store_.totals();
+  EXPECT_EQ(totals.by_state[static_cast<std::size_t>(JobState::kQueued)], 1);
+  EXPECT_EQ(totals.by_state[static_cast<std::size_t>(JobState::kSucceeded)], 1);
+  EXPECT_EQ(totals.bytes, 25);
+}
+
+TEST_F(SqliteJobStoreTest, AnotherOpeningFindsTheJobs) {
+  store_.insert(new_job("a"), std::nullopt);
+  SqliteJobStore again(folder_ / "jobs.sqlite");
+  EXPECT_TRUE(again.find("a"));
+}
+
+TEST(SqliteJobStoreVersionTest, ANewerSchemaIsRefused) {
+  const symcell::test::TemporaryFolder folder;
+  {
+    SQLite::Database database((folder / "jobs.sqlite").string(),
+                              SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    database.exec("PRAGMA user_version = 1000");
+  }
+  EXPECT_THROW(SqliteJobStore(folder / "jobs.sqlite"), std::runtime_error);
+}
+
+TEST(SqliteJobStoreVersionTest, AFileThatIsNoDatabaseIsRefused) {
+  const symcell::test::TemporaryFolder folder;
+  symcell::test::write_file(folder / "jobs.sqlite", std::string(5000, 'x'));
+  EXPECT_THROW(SqliteJobStore(folder / "jobs.sqlite"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace symcell::server

@@ -1,0 +1,42 @@
+// An engine that meshes nothing: tests decide when it ends and how.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+
+#include "server/jobs/job_engine.hpp"
+
+namespace symcell::server::test {
+
+class StubEngine final : public JobEngine {
+ public:
+  // Writes a small ring cell, once open() and unless told to fail.
+  [[nodiscard]] Result<void> run(const EngineJob& job, ExecutionContext& context) override;
+  [[nodiscard]] Result<std::string> inspect(std::string_view model,
+                                            ModelFormat format,
+                                            const MeshOptions& options,
+                                            ExecutionContext& context) override;
+
+  // From now on jobs wait until opened or cancelled.
+  void close_gate();
+  void open_gate();
+  void fail_with(Error error);
+  void throw_from_now_on() { throws_ = true; }
+  // Jobs that ignore cancellation until the gate opens.
+  void ignore_cancel() { ignores_cancel_ = true; }
+
+  [[nodiscard]] int runs() const { return runs_; }
+
+ private:
+  std::mutex mutex_;  // guards open_ and error_
+  std::condition_variable gate_;
+  bool open_ = true;
+  std::optional<Error> error_;
+  std::atomic<bool> throws_{false};
+  std::atomic<bool> ignores_cancel_{false};
+  std::atomic<int> runs_{0};
+};
+
+}  // namespace symcell::server::test
