@@ -7,6 +7,7 @@
 
 #include "core/geometry/rotation.hpp"
 #include "core/model/describe.hpp"
+#include "core/symmetry/edge_orbits.hpp"
 #include "core/symmetry/point_grid.hpp"
 
 namespace symcell {
@@ -21,21 +22,6 @@ struct Cut {
   std::int32_t edge = 0;
   double along = 0;
   OrbitVertex vertex;
-};
-
-// One copy of a segment orbit, written with the vertex of the smaller orbit first.
-struct EdgeCopy {
-  std::int32_t a = 0;  // orbits
-  std::int32_t b = 0;
-  std::int32_t turn = 0;      // exponent of b less that of a
-  std::int32_t exponent = 0;  // of a
-  std::int32_t marker = 0;
-  std::int32_t left = 0;
-  std::int32_t right = 0;
-  ClosedOrbits::Sides labels;
-  std::int32_t segment = 0;
-
-  [[nodiscard]] auto orbit() const { return std::tie(a, b, turn); }
 };
 
 class Closure {
@@ -59,7 +45,6 @@ class Closure {
     assign_orbits();
     average();
     if (auto ok = cut_edges(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = collect_edges(); !ok) return tl::unexpected(ok.error());
     if (auto ok = close_edges(); !ok) return tl::unexpected(ok.error());
     if (error_ > request_.tolerance) {
       return not_symmetric("moving the vertices into symmetric places takes " + relative(error_),
@@ -324,9 +309,10 @@ class Closure {
     return found;
   }
 
-  Result<void> collect_edges() {
+  Result<void> close_edges() {
     std::size_t next = 0;
-    copies_.reserve(prepared_.edges.size() + cuts_.size());
+    EdgeOrbits orbits(rotations_, result_.pslg.centre_orbit, prepared_.ignore_markers);
+    orbits.reserve(prepared_.edges.size() + cuts_.size());
     for (std::size_t e = 0; e < prepared_.edges.size(); ++e) {
       if ((e & 0xfff) == 0) {
         if (auto ok = context_.check(); !ok) return ok;
@@ -334,129 +320,12 @@ class Closure {
       const PreparedEdge& edge = prepared_.edges[e];
       OrbitVertex from = vertex_[at(edge.a)];
       for (; next < cuts_.size() && at(cuts_[next].edge) == e; ++next) {
-        add_copy(from, cuts_[next].vertex, edge);
+        orbits.add(from, cuts_[next].vertex, edge);
         from = cuts_[next].vertex;
       }
-      add_copy(from, vertex_[at(edge.b)], edge);
+      orbits.add(from, vertex_[at(edge.b)], edge);
     }
-    return {};
-  }
-
-  void add_copy(OrbitVertex from, OrbitVertex to, const PreparedEdge& edge) {
-    if (from == to) return;  // shorter than the link distance
-    EdgeCopy copy;
-    copy.marker = edge.marker;
-    copy.segment = edge.segment;
-    copy.left = edge.left;
-    copy.right = edge.right;
-    copy.labels = {edge.left_label, edge.right_label};
-    const std::int32_t turn = rotations_.subtract(to.exponent, from.exponent);
-    const bool reversed = is_centre(from.orbit) ||
-                          (!is_centre(to.orbit) && (to.orbit < from.orbit ||
-                                                    (to.orbit == from.orbit && 2 * turn > fold())));
-    if (reversed) {
-      std::swap(from, to);
-      std::swap(copy.left, copy.right);
-      std::swap(copy.labels.left, copy.labels.right);
-    }
-    copy.a = from.orbit;
-    copy.b = to.orbit;
-    copy.exponent = from.exponent;
-    copy.turn = is_centre(to.orbit) ? 0 : rotations_.subtract(to.exponent, from.exponent);
-    copies_.push_back(copy);
-  }
-
-  // Groups the copies by orbit; each must be there n times, alike.
-  Result<void> close_edges() {
-    std::sort(copies_.begin(), copies_.end(), [](const EdgeCopy& s, const EdgeCopy& t) {
-      return std::tie(s.a, s.b, s.turn, s.exponent, s.segment) <
-             std::tie(t.a, t.b, t.turn, t.exponent, t.segment);
-    });
-    // Two edges merged into one place count once.
-    copies_.erase(std::unique(copies_.begin(), copies_.end(),
-                              [](const EdgeCopy& s, const EdgeCopy& t) {
-                                return s.orbit() == t.orbit() && s.exponent == t.exponent;
-                              }),
-                  copies_.end());
-    SymmetricPslg& pslg = result_.pslg;
-    pslg.segments.reserve(copies_.size() / at(fold()));
-    pslg.uniform_markers = markers_are_uniform();
-    for (std::size_t i = 0; i < copies_.size();) {
-      std::size_t end = i + 1;
-      while (end < copies_.size() && copies_[end].orbit() == copies_[i].orbit()) ++end;
-      if (auto ok = check_edge_orbit(i, end); !ok) return ok;
-      add_segment(i);
-      i = end;
-    }
-    return {};
-  }
-
-  [[nodiscard]] bool markers_are_uniform() const {
-    for (std::size_t i = 1; i < copies_.size(); ++i) {
-      if (copies_[i].orbit() == copies_[i - 1].orbit() &&
-          copies_[i].marker != copies_[i - 1].marker)
-        return false;
-    }
-    return true;
-  }
-
-  Result<void> check_edge_orbit(std::size_t begin, std::size_t end) const {
-    const EdgeCopy& first = copies_[begin];
-    const std::int32_t point = prepared_point_of(first);
-    if (end - begin != at(fold())) {
-      const auto missing = at(fold()) - (end - begin);
-      return not_symmetric("segment " + std::to_string(first.segment) + " lacks " +
-                               std::to_string(missing) + " of its " + std::to_string(fold()) +
-                               " images",
-                           point);
-    }
-    if (first.a == first.b && 2 * first.turn == fold()) {
-      return not_symmetric("segment " + std::to_string(first.segment) +
-                               " is its own image, but does not pass the centre",
-                           point);
-    }
-    for (std::size_t i = begin + 1; i < end; ++i) {
-      const EdgeCopy& copy = copies_[i];
-      const bool same_sides = copy.left == first.left && copy.right == first.right;
-      const bool same_marker = copy.marker == first.marker || prepared_.ignore_markers;
-      if (same_sides && same_marker) continue;
-      const bool holes =
-          (copy.left == 0) != (first.left == 0) || (copy.right == 0) != (first.right == 0);
-      return not_symmetric(
-          "segments " + std::to_string(first.segment) + " and " + std::to_string(copy.segment) +
-              " are images of each other, but " +
-              (!same_sides ? (holes ? "a hole lies beside only one of them"
-                                    : "the regions beside them differ in attribute or max_area "
-                                      "(ignore_markers sets regions aside)")
-                           : "their markers " + std::to_string(first.marker) + " and " +
-                                 std::to_string(copy.marker) +
-                                 " differ (ignore_markers sets markers aside)"),
-          point);
-    }
-    return {};
-  }
-
-  // A point of the orbit that the copy starts from.
-  [[nodiscard]] std::int32_t prepared_point_of(const EdgeCopy& copy) const {
-    if (at(copy.a) + 1 >= first_member_.size()) return -1;
-    const std::int32_t first = first_member_[at(copy.a)];
-    return first < first_member_[at(copy.a) + 1] ? member_[at(first)] : -1;
-  }
-
-  // Copies are sorted by exponent, so the first one has exponent 0.
-  void add_segment(std::size_t begin) {
-    const EdgeCopy& copy = copies_[begin];
-    SymmetricPslg& pslg = result_.pslg;
-    SymmetricSegment segment;
-    segment.a = {copy.a, 0};
-    segment.b = {copy.b, copy.turn};
-    segment.first_marker = static_cast<std::int32_t>(pslg.segment_markers.size());
-    const std::size_t count = pslg.uniform_markers ? 1 : at(fold());
-    for (std::size_t k = 0; k < count; ++k) {
-      pslg.segment_markers.push_back(copies_[begin + k].marker);
-    }
-    pslg.segments.push_back(segment);
-    for (std::size_t k = 0; k < at(fold()); ++k) result_.sides.push_back(copies_[begin + k].labels);
+    return orbits.close(result_);
   }
 
   const PreparedPslg& prepared_;
@@ -471,7 +340,6 @@ class Closure {
   std::vector<std::int32_t> first_member_;  // per orbit, into member_
   std::vector<std::int32_t> member_;        // points by orbit, exponent
   std::vector<Cut> cuts_;
-  std::vector<EdgeCopy> copies_;
   std::size_t created_ = 0;
   double error_ = 0;
   std::int32_t worst_ = -1;
