@@ -1,6 +1,7 @@
 #include "core/mesh_pslg.hpp"
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "core/cells/build_cell_mesh.hpp"
@@ -18,6 +19,10 @@
 
 namespace symcell {
 namespace {
+
+constexpr int kAttempts = 6;
+constexpr int kSamples = 24;
+constexpr double kSamplingAngleDeg = 38;
 
 class Stopwatch {
  public:
@@ -95,10 +100,28 @@ Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
   if (auto ok = check_area_budget(*start, criteria, context); !ok) {
     return tl::unexpected<Error>(ok.error());
   }
+  // Near 40 degrees a run may cascade where another, with other sampled points, does not: begin
+  // again from the initial triangulation a few times before giving up.
+  const QuotientTriangulation initial = start->mesh;
+  const Criteria initial_criteria = criteria;
   DelaunayEditor editor(start->mesh);
-  Refiner refiner(editor, criteria, symmetric->center, !options.plain, context);
-  if (auto ok = refiner.run(); !ok) return tl::unexpected<Error>(ok.error());
-  Coarsener coarsener(editor, criteria, refiner.surgery(), context);
+  std::optional<Refiner> refiner;
+  for (int attempt = 0;; ++attempt) {
+    const bool sample = !options.plain && (attempt > 0 || options.min_angle_deg >= kSamplingAngleDeg);
+    refiner.emplace(editor, criteria,
+                    Refiner::Settings{symmetric->center, !options.plain, sample ? kSamples : 0,
+                                      options.seed + static_cast<std::uint64_t>(attempt)},
+                    context);
+    auto ok = refiner->run();
+    if (ok) break;
+    if (ok.error().code != ErrorCode::kBoundUnreachable || options.plain ||
+        attempt + 1 == kAttempts) {
+      return tl::unexpected<Error>(ok.error());
+    }
+    start->mesh = initial;
+    criteria = initial_criteria;
+  }
+  Coarsener coarsener(editor, criteria, refiner->surgery(), context);
   if (!options.plain) {
     if (auto ok = coarsener.run(); !ok) return tl::unexpected<Error>(ok.error());
   }
@@ -120,7 +143,7 @@ Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
   stats.symmetry.axis_origin = {symmetric->center.x, symmetric->center.y, 0};
   stats.symmetry.error_rel = symmetric->symmetry_error_rel;
   stats.symmetry.detected = symmetric->fold_detected;
-  const RefineCounters& done = refiner.counters();
+  const RefineCounters& done = refiner->counters();
   for (std::size_t v = input_vertices; v < start->mesh.vertex_slots(); ++v) {
     stats.refinement.steiner_points +=
         start->mesh.kind(static_cast<VertexId>(v)) != VertexKind::kDeleted ? 1 : 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numbers>
 #include <string>
 
 namespace symcell {
@@ -20,6 +21,8 @@ constexpr std::uint8_t kMaxMoves = 12;
 constexpr std::uint64_t kTickInterval = 256;
 // Off-centres lie where the new triangle's angle is a little above the bound [Shewchuk, Triangle].
 constexpr double kOffCentreFactor = 0.475;
+// Samples lie within this many shortest edges of the off-centre.
+constexpr double kSampleReach = 1.5;
 
 constexpr std::uint8_t kQueued = 1;
 constexpr std::uint8_t kForced = 2;
@@ -28,15 +31,15 @@ constexpr std::uint8_t kForced = 2;
 
 Refiner::Refiner(DelaunayEditor& editor,
                  Criteria& criteria,
-                 Point2 center,
-                 bool relocate,
+                 const Settings& settings,
                  ExecutionContext& context)
     : editor_(editor),
       mesh_(editor.mesh()),
       criteria_(criteria),
-      center_(center),
-      relocate_(relocate && criteria.goal_angle() > 0),
+      settings_(settings),
+      relocate_(settings.relocate && criteria.goal_angle() > 0),
       context_(context),
+      random_(settings.seed),
       surgery_(editor, criteria) {
   double shortest2 = std::numeric_limits<double>::infinity(), extent = 0;
   for (TriangleId t = 0; t < mesh_.triangle_slots(); ++t) {
@@ -137,7 +140,7 @@ Result<void> Refiner::run() {
 
 Error Refiner::unreachable(TriangleId t) const {
   const Triangle& tri = mesh_.triangle(t);
-  const Point2 p = mesh_.corner_point(tri, 0) + center_;
+  const Point2 p = mesh_.corner_point(tri, 0) + settings_.center;
   char text[256];
   std::snprintf(text, sizeof text,
                 "the bounds cannot be reached near (%.9g, %.9g): edges shrink there without end; "
@@ -260,6 +263,9 @@ Refiner::Outcome Refiner::treat(TriangleId t) {
   }
   if (a.shortest2 < shortest_allowed2_) return Outcome::kStuck;
   if (relocate_ && a.verdict == Verdict::kAngle && relocate_corner_of(t)) return Outcome::kDone;
+  if (settings_.samples > 0 && a.verdict == Verdict::kAngle && insert_sampled(t, a)) {
+    return Outcome::kDone;
+  }
   const Outcome first = insert_for(t, off_center(t, a, false));
   if (first != Outcome::kStuck) return first;
   return insert_for(t, off_center(t, a, true));
@@ -321,27 +327,51 @@ Refiner::Outcome Refiner::insert_for(TriangleId t, Point2 x) {
   }
   const TriangleId home = triangle_of(where.half_edge);
   x = mesh_.rotations().rotate(x, mesh_.subtract(0, where.exponent));
+  if (const auto y = good_star_near(home, x)) return insert_at(home, *y, true, where.exponent);
+  if (encroaches(cavity_, x)) return Outcome::kRetry;
+  return insert_at(home, x, false, where.exponent);
+}
+
+// Leaves the cavity of x in cavity_. A point in it whose star keeps all bounds, if there is one.
+std::optional<Point2> Refiner::good_star_near(TriangleId home, Point2 x) {
   editor_.compute_cavity(home, x, cavity_);
-  bool optimal = false;
-  if (relocate_ && cavity_.simple) {
-    surgery_.lift_edges(cavity_.edges, star_edges_);
-    if (const auto y = surgery_.region().find(star_edges_)) {
-      x = *y;
-      optimal = true;
-    }
-  }
-  if (!optimal && encroaches(cavity_, x)) return Outcome::kRetry;
+  if (!relocate_ || !cavity_.simple) return std::nullopt;
+  surgery_.lift_edges(cavity_.edges, star_edges_);
+  return surgery_.region().find(star_edges_);
+}
+
+// Inserts x, whose cavity is in cavity_.
+Refiner::Outcome Refiner::insert_at(TriangleId home, Point2 x, bool optimal, std::int32_t exponent) {
   for (const CavityEdge& e : cavity_.edges) {
     if (squared_distance(mesh_.lift(e.a.v, e.a.k), x) < shortest_allowed2_) return Outcome::kStuck;
   }
   const VertexId v = editor_.insert_in_cavity(home, x, cavity_, VertexKind::kFree);
   if (v < 0) return Outcome::kStuck;
   if (optimal) settle_star();
-  if (where.exponent != 0) ++editor_.counters().crossings;
+  if (exponent != 0) ++editor_.counters().crossings;
   if (static_cast<std::size_t>(v) < moves_.size()) moves_[static_cast<std::size_t>(v)] = 0;
   ++counters_.inserted;
   enqueue_created();
   return Outcome::kDone;
+}
+
+// Other cavities than the off-centre's may have room for a good star: tries random points round the
+// off-centre. Pays at bounds near 40 degrees, where plain refinement cascades.
+bool Refiner::insert_sampled(TriangleId t, const Assessment& assessment) {
+  const Point2 middle = off_center(t, assessment, false);
+  const double reach = kSampleReach * std::sqrt(assessment.shortest2);
+  for (int i = 0; i < settings_.samples; ++i) {
+    const double angle = 2 * std::numbers::pi * random_.uniform();
+    const double radius = i == 0 ? 0 : reach * std::sqrt(random_.uniform());
+    Point2 x = middle + radius * Point2{std::cos(angle), std::sin(angle)};
+    const Location where = locate(mesh_, t, x);
+    if (where.kind != Location::Kind::kInside) continue;
+    const TriangleId home = triangle_of(where.half_edge);
+    x = mesh_.rotations().rotate(x, mesh_.subtract(0, where.exponent));
+    const auto y = good_star_near(home, x);
+    if (y && insert_at(home, *y, true, where.exponent) == Outcome::kDone) return true;
+  }
+  return false;
 }
 
 }  // namespace symcell

@@ -8,10 +8,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/base/error.hpp"
 #include "core/base/execution_context.hpp"
+#include "core/base/random.hpp"
 #include "core/delaunay/insert.hpp"
 #include "core/delaunay/locate.hpp"
 #include "core/refine/bad_triangle_queue.hpp"
@@ -29,11 +31,17 @@ struct RefineCounters {
 
 class Refiner {
  public:
-  // `center`: of the model, for messages.  `relocate`: moves and star-optimal insertion on.
+  struct Settings {
+    Point2 center;          // of the model, for messages
+    bool relocate = true;   // moves and star-optimal insertion
+    // Points tried round a bad triangle for one with a good star before its off-centre is taken.
+    int samples = 0;
+    std::uint64_t seed = 0;  // of the samples
+  };
+
   Refiner(DelaunayEditor& editor,
           Criteria& criteria,
-          Point2 center,
-          bool relocate,
+          const Settings& settings,
           ExecutionContext& context);
 
   // Refines until no triangle is bad. Errors: limits, kBoundUnreachable (names the place).
@@ -58,6 +66,9 @@ class Refiner {
   [[nodiscard]] Outcome treat(TriangleId t);
   [[nodiscard]] bool relocate_corner_of(TriangleId t);
   [[nodiscard]] Outcome insert_for(TriangleId t, Point2 x);
+  [[nodiscard]] bool insert_sampled(TriangleId t, const Assessment& assessment);
+  [[nodiscard]] std::optional<Point2> good_star_near(TriangleId home, Point2 x);
+  [[nodiscard]] Outcome insert_at(TriangleId home, Point2 x, bool optimal, std::int32_t exponent);
   [[nodiscard]] Point2 off_center(TriangleId t, const Assessment& assessment, bool farther) const;
   [[nodiscard]] bool encroaches(const Cavity& cavity, Point2 x);
   [[nodiscard]] Result<void> tick();
@@ -66,9 +77,10 @@ class Refiner {
   DelaunayEditor& editor_;
   QuotientTriangulation& mesh_;
   Criteria& criteria_;
-  Point2 center_;
+  Settings settings_;
   bool relocate_;
   ExecutionContext& context_;
+  Random random_;
   StarSurgery surgery_;
   RefineCounters counters_;
   BadTriangleQueue queue_;
