@@ -278,12 +278,14 @@ class PslgHandler {
         *parts[i] = *whole;
         continue;
       }
-      count_ = i + 1;  // for the pointer
+      const std::string place = "/" + std::to_string(i);
       if (i < 2 && std::floor(numbers_[i]) == numbers_[i]) {
-        return complain(ErrorCode::kIndexOutOfRange, "there is no vertex of this index");
+        return complain(ErrorCode::kIndexOutOfRange, "there is no vertex of this index", place);
       }
-      return complain(ErrorCode::kWrongType, i < 2 ? "a vertex index is a whole number"
-                                                   : "a marker is a whole number of 32 bits");
+      return complain(
+          ErrorCode::kWrongType,
+          i < 2 ? "a vertex index is a whole number" : "a marker is a whole number of 32 bits",
+          place);
     }
     pslg_.segments.push_back(segment);
   }
@@ -378,9 +380,10 @@ class PslgHandler {
     return text;
   }
 
-  void complain(ErrorCode code, const std::string& what) {
+  // `place` continues the pointer.
+  void complain(ErrorCode code, const std::string& what, const std::string& place = {}) {
     if (error_) return;
-    const std::string at = pointer();
+    const std::string at = pointer() + place;
     error_ = Error{code, (at.empty() ? "" : at + ": ") + what + where(), {}, at};
   }
 

@@ -199,8 +199,10 @@ Result<MeshData> read_vtu(std::string_view bytes) {
     if (bytes.substr(cut, open_end - cut).find("\"raw\"") == std::string_view::npos) {
       return fail(ErrorCode::kUnknownFormat, "appended data are read in raw encoding only");
     }
-    const std::size_t end = bytes.rfind("</AppendedData>");
-    if (end == std::string_view::npos || end < begin) {
+    constexpr std::string_view kClosing = "</AppendedData>";
+    const std::size_t end = bytes.rfind(kClosing);
+    if (end == std::string_view::npos || end < begin ||
+        bytes.find("</VTKFile>", end + kClosing.size()) == std::string_view::npos) {
       return fail(ErrorCode::kTruncated, "the appended data do not end; is the file complete?");
     }
     appended = bytes.substr(begin + 1, end - begin - 1);

@@ -1,0 +1,31 @@
+// What the fuzz targets share.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "core/base/error.hpp"
+
+namespace symcell::fuzz {
+
+[[nodiscard]] inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
+  return {reinterpret_cast<const char*>(data), size};
+}
+
+// A law that every input must keep.
+inline void require(bool holds, const char* law) {
+  if (holds) return;
+  std::fprintf(stderr, "broken: %s\n", law);
+  std::abort();
+}
+
+// Parsers may refuse anything, but they say why, in one printable line.
+inline void require_good_message(const Error& error) {
+  require(error.code != ErrorCode::kInternal, "no input is an internal error");
+  require(!error.message.empty(), "an error has a message");
+  for (const char c : error.message) require(c >= ' ' && c <= '~', "messages are printable ASCII");
+}
+
+}  // namespace symcell::fuzz

@@ -1,0 +1,74 @@
+// Every format on one small mesh whose coordinates are exact on any machine: a square of four
+// quarter turns about its centre.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "api/problem.hpp"
+#include "api/schema/options.hpp"
+#include "core/cells/quadratic.hpp"
+#include "tests/golden/golden.hpp"
+#include "tests/support/sample_cells.hpp"
+#include "tests/support/written_mesh.hpp"
+
+namespace symcell {
+namespace {
+
+using test::expect_golden;
+using test::written;
+
+SymmetryCellMesh quarter() {
+  return test::disc_cell(4, 1, {3, -1});
+}
+
+TEST(Golden, Json) {
+  expect_golden("quarter_cell.json", written(quarter(), MeshPart::kCell, MeshFormat::kJson));
+  expect_golden("quarter_full.json", written(quarter(), MeshPart::kFull, MeshFormat::kJson));
+  expect_golden("quarter_cell_order2.json",
+                written(elevate_to_quadratic(quarter()), MeshPart::kCell, MeshFormat::kJson));
+}
+
+TEST(Golden, Vtu) {
+  const WriteOptions ascii{VtuEncoding::kAscii};
+  expect_golden("quarter_cell.vtu", written(quarter(), MeshPart::kCell, MeshFormat::kVtu, ascii));
+  expect_golden("quarter_full.vtu", written(quarter(), MeshPart::kFull, MeshFormat::kVtu, ascii));
+  // The head of the binary file; its data are checked by reading back.
+  const std::string raw = written(quarter(), MeshPart::kCell, MeshFormat::kVtu);
+  expect_golden("quarter_cell_raw_head.vtu", raw.substr(0, raw.find("<AppendedData")));
+}
+
+TEST(Golden, Msh) {
+  expect_golden("quarter_cell.msh", written(quarter(), MeshPart::kCell, MeshFormat::kMsh));
+  expect_golden("quarter_full.msh", written(quarter(), MeshPart::kFull, MeshFormat::kMsh));
+  expect_golden("quarter_cell_order2.msh",
+                written(elevate_to_quadratic(quarter()), MeshPart::kCell, MeshFormat::kMsh));
+  expect_golden("square_cell.msh", written(test::square_cell(), MeshPart::kCell, MeshFormat::kMsh));
+}
+
+TEST(Golden, Svg) {
+  expect_golden("quarter_cell.svg", written(quarter(), MeshPart::kCell, MeshFormat::kSvg));
+  expect_golden("quarter_full.svg", written(quarter(), MeshPart::kFull, MeshFormat::kSvg));
+}
+
+TEST(Golden, Options) {
+  expect_golden("options_defaults.json", options_to_json(MeshOptions{}).dump(1) + "\n");
+  std::string table;
+  for (const OptionInfo& info : mesh_option_table()) {
+    table += std::string(info.name) + " | " + std::string(info.metavar) + " | " +
+             std::string(info.standard) + " | " + std::string(info.help) + "\n";
+  }
+  expect_golden("options_table.txt", table);
+}
+
+// Codes, statuses and exit codes are part of the interface.
+TEST(Golden, Problems) {
+  std::string table;
+  for (const ProblemRow& row : problem_table()) {
+    table += std::string(error_code_name(row.code)) + " " + std::to_string(row.http_status) + " " +
+             std::to_string(row.exit_code) + " " + std::string(row.title) + "\n";
+  }
+  expect_golden("problems.txt", table);
+}
+
+}  // namespace
+}  // namespace symcell

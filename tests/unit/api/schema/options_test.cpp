@@ -1,0 +1,162 @@
+#include "api/schema/options.hpp"
+
+#include <gtest/gtest.h>
+
+namespace symcell {
+namespace {
+
+using Json = nlohmann::json;
+
+ErrorCode code_of(const Result<MeshOptions>& result) {
+  EXPECT_FALSE(result.has_value());
+  return result ? ErrorCode::kInternal : result.error().code;
+}
+
+Result<MeshOptions> from_text(const std::string& name, const std::string& text) {
+  return options_from_texts({{name, text}});
+}
+
+TEST(Options, DefaultsAreThoseOfTheCore) {
+  const auto options = options_from_json(Json::object());
+  ASSERT_TRUE(options);
+  EXPECT_FALSE(options->fold);
+  EXPECT_EQ(options->min_angle_deg, 30);
+  EXPECT_EQ(options->order, 1);
+  EXPECT_EQ(options->symmetry_tolerance_rel, 1e-6);
+}
+
+TEST(Options, JsonAndTextsSetTheSame) {
+  const auto json = options_from_json(Json::parse(R"({"fold": 6, "ignore_markers": true,
+      "center": [1, -2.5], "symmetry_tolerance": 1e-4, "min_angle": 33, "max_area": 0.5,
+      "max_edge": 2, "order": 2, "max_elements": 1000, "time_limit": 1.5, "seed": 7,
+      "plain": true})"));
+  const auto texts = options_from_texts({{"fold", "6"},
+                                         {"ignore-markers", ""},
+                                         {"center", "1,-2.5"},
+                                         {"symmetry-tolerance", "1e-4"},
+                                         {"min_angle", "33"},
+                                         {"max-area", "0.5"},
+                                         {"max_edge", "2"},
+                                         {"order", "2"},
+                                         {"max_elements", "1000"},
+                                         {"time-limit", "1.5"},
+                                         {"seed", "7"},
+                                         {"plain", "true"}});
+  ASSERT_TRUE(json) << json.error().message;
+  ASSERT_TRUE(texts) << texts.error().message;
+  EXPECT_EQ(options_to_json(*json), options_to_json(*texts));
+  EXPECT_EQ(json->fold, 6);
+  EXPECT_TRUE(json->ignore_markers);
+  EXPECT_EQ(json->center, (Point2{1, -2.5}));
+  EXPECT_EQ(json->max_area, 0.5);
+  EXPECT_EQ(json->max_elements, 1000U);
+  EXPECT_EQ(json->seed, 7U);
+  EXPECT_TRUE(json->plain);
+}
+
+TEST(Options, FoldsThatAreNone) {
+  for (const char* fold : {"0", "-3", "2.5", "\"four\"", "1000000007", "1e300", "[2]", "true",
+                           "\"\"", "30001", "{\"n\":1}", "-1e30"}) {
+    const auto options = options_from_json({{"fold", Json::parse(fold)}});
+    EXPECT_EQ(code_of(options), ErrorCode::kBadFold) << fold;
+    EXPECT_EQ(options.error().pointer, "/options/fold");
+  }
+  for (const char* fold : {"0", "-3", "2.5", "four", "1000000007", "", "nan", "6x", "inf"}) {
+    EXPECT_EQ(code_of(from_text("fold", fold)), ErrorCode::kBadFold) << fold;
+  }
+  EXPECT_EQ(from_text("fold", "1")->fold, 1);
+  EXPECT_FALSE(from_text("fold", "auto")->fold);
+  EXPECT_EQ(options_from_json({{"fold", 2.0}})->fold, 2);
+  EXPECT_EQ(from_text("fold", std::to_string(kMaxFold))->fold, kMaxFold);
+}
+
+TEST(Options, HelpNamesTheLargestFold) {
+  EXPECT_NE(mesh_option_table()[0].help.find(std::to_string(kMaxFold)), std::string_view::npos);
+}
+
+TEST(Options, NumbersOutOfRange) {
+  const std::pair<const char*, const char*> bad[] = {{"min_angle", "42.5"},
+                                                     {"min_angle", "-1"},
+                                                     {"min_angle", "nan"},
+                                                     {"min_angle", "abc"},
+                                                     {"max_area", "0"},
+                                                     {"max_area", "-2"},
+                                                     {"max_area", "inf"},
+                                                     {"max_edge", "1e999"},
+                                                     {"order", "3"},
+                                                     {"order", "1.5"},
+                                                     {"max_elements", "0"},
+                                                     {"max_elements", "-5"},
+                                                     {"time_limit", "0"},
+                                                     {"time_limit", "-1"},
+                                                     {"seed", "-1"},
+                                                     {"seed", "1.5"},
+                                                     {"symmetry_tolerance", "0"},
+                                                     {"symmetry_tolerance", "2"},
+                                                     {"ignore_markers", "maybe"},
+                                                     {"plain", "2"}};
+  for (const auto& [name, text] : bad) {
+    const auto options = from_text(name, text);
+    EXPECT_EQ(code_of(options), ErrorCode::kBadOption) << name << " " << text;
+    EXPECT_EQ(options.error().pointer, std::string("/options/") + name);
+    EXPECT_NE(options.error().message.find(name), std::string::npos);
+  }
+  EXPECT_EQ(from_text("min_angle", "42")->min_angle_deg, 42);
+  EXPECT_EQ(from_text("min_angle", "0")->min_angle_deg, 0);
+  EXPECT_EQ(from_text("seed", "18446744073709551615")->seed, ~std::uint64_t{0});
+}
+
+TEST(Options, CentreAndAxis) {
+  EXPECT_EQ(from_text("axis_origin", "1,2,0")->center, (Point2{1, 2}));
+  EXPECT_EQ(from_text("center", " 1 , +2")->center, (Point2{1, 2}));
+  EXPECT_TRUE(from_text("axis_direction", "0,0,1"));
+  EXPECT_TRUE(from_text("axis_direction", "0,0,-1"));
+  EXPECT_TRUE(options_from_json({{"axis_direction", nullptr}, {"axis_origin", {3, 4}}}));
+  for (const char* axis : {"0,0,0", "1,0,0", "nan,0,1", "0,1", "z", ""}) {
+    EXPECT_EQ(code_of(from_text("axis_direction", axis)), ErrorCode::kBadAxis) << axis;
+  }
+  for (const char* center : {"1", "1,2,3", "1,2,0,0", "nan,0", "1,inf", "a,b", "1,", ",1", "1;2"}) {
+    EXPECT_EQ(code_of(from_text("center", center)), ErrorCode::kBadAxis) << center;
+  }
+  EXPECT_EQ(code_of(options_from_json({{"center", {1, 2}}, {"axis_origin", {1, 3}}})),
+            ErrorCode::kBadAxis);
+  EXPECT_EQ(code_of(options_from_json({{"center", {"1", "2"}}})), ErrorCode::kBadAxis);
+}
+
+TEST(Options, SolidsOnlyOnesAreKnownAndRefused) {
+  for (const char* name : {"radius_edge", "max_volume", "min_dihedral", "delaunay"}) {
+    EXPECT_TRUE(is_mesh_option(name));
+    const auto options = from_text(name, "1");
+    EXPECT_EQ(code_of(options), ErrorCode::kBadOption);
+    EXPECT_NE(options.error().message.find("solid"), std::string::npos);
+  }
+  EXPECT_TRUE(options_from_json({{"radius_edge", nullptr}, {"delaunay", false}}));
+}
+
+TEST(Options, UnknownNamesAreRefusedWithASuggestion) {
+  const auto options = options_from_json({{"minangle", 30}});
+  EXPECT_EQ(code_of(options), ErrorCode::kBadOption);
+  EXPECT_EQ(options.error().pointer, "/options/minangle");
+  EXPECT_NE(options.error().message.find("\"min_angle\""), std::string::npos);
+  EXPECT_EQ(options_from_json({{"a/b~c", 1}}).error().pointer, "/options/a~1b~0c");
+  EXPECT_EQ(code_of(options_from_json(Json::array())), ErrorCode::kBadOption);
+  EXPECT_EQ(code_of(options_from_texts({{"fold", "2"}, {"fold", "3"}})), ErrorCode::kBadOption);
+  // Foreign bytes stay out of messages.
+  EXPECT_EQ(options_from_json({{"\xff\x01", 1}}).error().message, "there is no option \"\?\?\"");
+}
+
+TEST(Options, SettingsTellEveryNameAndReadBack) {
+  MeshOptions options;
+  options.fold = 5;
+  options.center = Point2{1, 2};
+  options.max_area = 3;
+  const auto json = options_to_json(options);
+  EXPECT_EQ(json.size(), mesh_option_table().size());
+  EXPECT_TRUE(json["max_edge"].is_null());
+  const auto back = options_from_json(Json(json));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(options_to_json(*back), json);
+}
+
+}  // namespace
+}  // namespace symcell
