@@ -28,6 +28,7 @@ Criteria::Criteria(const QuotientTriangulation& mesh,
   goal_angle_ = bound * kRadian;
   cos2_goal_ = bound > 0 ? std::cos(goal_angle_) * std::cos(goal_angle_) : 2.0;
   cos_lens_ = std::cos(2 * goal_angle_);
+  shell_angle_ = std::max(kShellAngleDeg * kRadian, kShellFactor * goal_angle_);
   // The square of a length just inside the bound must not round to one outside.
   max_edge2_ = options.max_edge * options.max_edge * (1 - 1e-12);
   has_size_bound_ = options.max_edge < kInfinity;
@@ -82,7 +83,7 @@ void Criteria::add_corner(const QuotientTriangulation& mesh, VertexId v, Point2 
   // Rounding may turn a full turn (a dangling segment's end) into a tiny angle.
   constexpr double kFullTurnSlack = 1e-9;
   if (angle < kFullTurnSlack) angle = 2 * std::numbers::pi;
-  if (angle < kShellAngleDeg * kRadian) acute_[static_cast<std::size_t>(v)] |= 1;
+  if (angle < shell_angle_) acute_[static_cast<std::size_t>(v)] |= 1;
   if (angle >= goal_angle_) return;
   acute_[static_cast<std::size_t>(v)] |= 2;
   const std::int32_t copies = v == mesh.centre() ? mesh.fold() : 1;

@@ -21,6 +21,9 @@ namespace symcell {
 inline constexpr double kAngleMarginDeg = 1e-7;
 // Segments meeting below this angle are split on concentric shells [Ruppert95 sec. 7].
 inline constexpr double kShellAngleDeg = 60.0;
+// So are corners below this many angle bounds: they take two triangles, whose angles leave their
+// sides hardly any freedom to differ in length (measured: without, an 87 degree corner cascades at 40).
+inline constexpr double kShellFactor = 2.5;
 
 enum class Verdict : std::uint8_t { kGood, kAngle, kSize };
 enum class Exemption : std::uint8_t { kNone, kSmallInputAngle, kSeditious, kFoldAngleAtCentre };
@@ -66,7 +69,7 @@ class Criteria {
   [[nodiscard]] double max_edge2() const { return max_edge2_; }
   [[nodiscard]] bool has_size_bound() const { return has_size_bound_; }
 
-  // Input vertices with a corner below kShellAngleDeg.
+  // Input vertices with a corner whose segments are split on shells.
   [[nodiscard]] bool is_acute(VertexId v) const {
     return static_cast<std::size_t>(v) < acute_.size() && acute_[static_cast<std::size_t>(v)] != 0;
   }
@@ -110,6 +113,7 @@ class Criteria {
 
   double goal_angle_ = 0;
   double cos2_goal_ = 1;
+  double shell_angle_ = 0;
   double cos_lens_ = 1;   // cos of twice the bound
   double max_edge2_ = 0;
   bool has_size_bound_ = false;
