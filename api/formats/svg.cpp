@@ -58,7 +58,7 @@ class Picture {
     out.character(command);
     out.short_real(p.x * scale_, kDigits);
     out.character(' ');
-    out.short_real(-p.y * scale_, kDigits);
+    out.short_real(0.0 - p.y * scale_, kDigits);  // no "-0"
   }
 
  private:

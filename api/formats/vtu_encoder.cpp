@@ -12,7 +12,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "binary files are written as the machine keeps its numbers");
 
-constexpr int kCompressionLevel = 3;
+constexpr int kCompressionLevel = 1;
 // Of all compressed arrays together: most cells are made once only.
 constexpr std::uint64_t kCacheLimit = std::uint64_t{64} << 20;
 

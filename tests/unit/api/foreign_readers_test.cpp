@@ -90,6 +90,16 @@ std::set<std::pair<std::size_t, std::size_t>> periodic_pairs(const std::string& 
   return pairs;
 }
 
+// Debian's Gmsh lacks a library that it would like for any affine map, and says so.
+bool has_warning(const std::string& output) {
+  std::istringstream in(output);
+  std::string line;
+  while (std::getline(in, line)) {
+    if (line.starts_with("Warning") && line.find("ANN support") == std::string::npos) return true;
+  }
+  return false;
+}
+
 TEST(ForeignReaders, GmshKeepsNodesElementsGroupsAndPeriodicity) {
   if (std::system("command -v gmsh > /dev/null 2>&1") != 0) GTEST_SKIP() << "no gmsh here";
   const test::TemporaryFolder folder;
@@ -103,7 +113,7 @@ TEST(ForeignReaders, GmshKeepsNodesElementsGroupsAndPeriodicity) {
             run("gmsh -v 3 -save -format msh41 -o " + at + "out.msh " + at + "in.msh", folder);
         EXPECT_EQ(gmsh.status, 0) << gmsh.output;
         EXPECT_EQ(gmsh.output.find("Error"), std::string::npos) << gmsh.output;
-        EXPECT_EQ(gmsh.output.find("Warning"), std::string::npos) << gmsh.output;
+        EXPECT_FALSE(has_warning(gmsh.output)) << gmsh.output;
         const std::string theirs = test::read_file(folder / "out.msh");
         EXPECT_EQ(counts(theirs), counts(ours)) << sample.name;
         EXPECT_EQ(periodic_pairs(theirs), periodic_pairs(ours)) << sample.name;
