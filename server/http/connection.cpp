@@ -12,6 +12,7 @@
 namespace symcell::server {
 namespace {
 
+using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 void describe(const sockaddr_storage& address, socklen_t length, std::string& ip, int& port) {
@@ -37,9 +38,9 @@ int poll_one(int descriptor, short events, milliseconds timeout) {
 }  // namespace
 
 ConnectionStream::ConnectionStream(socket_t socket,
-                                   int stop_descriptor,
+                                   const StopSignal& stop,
                                    const ConnectionLimits& limits)
-    : socket_(socket), stop_descriptor_(stop_descriptor), limits_(limits) {
+    : socket_(socket), stop_(stop), limits_(limits) {
 }
 
 void ConnectionStream::begin_request() {
@@ -51,7 +52,7 @@ void ConnectionStream::begin_request() {
 }
 
 ConnectionStream::Wait ConnectionStream::wait_readable(milliseconds timeout) const {
-  std::array<pollfd, 2> entries{pollfd{socket_, POLLIN, 0}, pollfd{stop_descriptor_, POLLIN, 0}};
+  std::array<pollfd, 2> entries{pollfd{socket_, POLLIN, 0}, pollfd{stop_.descriptor(), POLLIN, 0}};
   const int n = ::poll(entries.data(), entries.size(), static_cast<int>(timeout.count()));
   if (n == 0 || (n < 0 && errno == EINTR)) return Wait::kTimeout;
   if (n < 0 || entries[1].revents != 0) return Wait::kFailed;
@@ -63,12 +64,27 @@ bool ConnectionStream::wait_within_limits(short events,
                                           std::chrono::nanoseconds& waited) const {
   const milliseconds granted =
       limits_.patience + milliseconds(bytes * 1000 / limits_.min_bytes_per_second);
-  const auto left = std::chrono::duration_cast<milliseconds>(granted - waited) + milliseconds(1);
-  if (left.count() <= 0) return false;
-  const auto start = std::chrono::steady_clock::now();
-  const int ready = poll_one(socket_, events, std::min(limits_.io_timeout, left));
-  waited += std::chrono::steady_clock::now() - start;
-  return ready > 0;
+  const auto start = Clock::now();
+  const auto deadline =
+      start +
+      std::min(limits_.io_timeout, std::chrono::duration_cast<milliseconds>(granted - waited));
+  bool ready = false;
+  while (!ready) {
+    const bool stopping = stop_.raised();
+    const auto limit = stopping ? std::min(deadline, stop_.give_up_at()) : deadline;
+    const auto left = std::chrono::ceil<milliseconds>(limit - Clock::now());
+    if (left.count() <= 0) break;
+    // The stop signal wakes us once; from then on only its deadline matters.
+    std::array<pollfd, 2> entries{pollfd{socket_, events, 0},
+                                  pollfd{stopping ? -1 : stop_.descriptor(), POLLIN, 0}};
+    if (::poll(entries.data(), entries.size(), static_cast<int>(left.count())) < 0) {
+      if (errno != EINTR) break;
+      continue;
+    }
+    ready = entries[0].revents != 0;
+  }
+  waited += Clock::now() - start;
+  return ready;
 }
 
 bool ConnectionStream::is_readable() const {
@@ -98,6 +114,8 @@ ssize_t ConnectionStream::read(char* ptr, size_t size) {
 }
 
 ssize_t ConnectionStream::write(const char* ptr, size_t size) {
+  // A client that always keeps pace never waits: look here too.
+  if (stop_.raised() && Clock::now() > stop_.give_up_at()) return -1;
   while (true) {
     const ssize_t n = ::send(socket_, ptr, size, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n >= 0) {
@@ -126,13 +144,17 @@ void ConnectionStream::get_local_ip_and_port(std::string& ip, int& port) const {
   }
 }
 
+void ConnectionStream::discard_arrived() {
+  ::shutdown(socket_, SHUT_WR);
+  static_cast<void>(::recv(socket_, buffer_.data(), buffer_.size(), MSG_DONTWAIT));
+}
+
 void ConnectionStream::close_gently() {
   constexpr std::size_t kMostBytes = 64UL << 20U;
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+  const auto deadline = Clock::now() + std::chrono::seconds(2);
   ::shutdown(socket_, SHUT_WR);
   for (std::size_t total = 0; total < kMostBytes;) {
-    const auto left =
-        std::chrono::duration_cast<milliseconds>(deadline - std::chrono::steady_clock::now());
+    const auto left = std::chrono::duration_cast<milliseconds>(deadline - Clock::now());
     if (left.count() <= 0 || wait_readable(left) != Wait::kReady) return;
     const ssize_t n = ::recv(socket_, buffer_.data(), buffer_.size(), 0);
     if (n <= 0) return;

@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <string>
 
+#include "server/http/stop_signal.hpp"
+
 namespace symcell::server {
 
 struct ConnectionLimits {
@@ -23,18 +25,21 @@ struct ConnectionLimits {
 // against it, so a slow producer on our side is not the client's fault.
 class ConnectionStream final : public httplib::Stream {
  public:
-  ConnectionStream(socket_t socket, int stop_descriptor, const ConnectionLimits& limits);
+  // `stop` must outlive the stream.
+  ConnectionStream(socket_t socket, const StopSignal& stop, const ConnectionLimits& limits);
 
   // True when a request begins to arrive; false: closed, idle for too long, or stop.
-  // `give_up` is asked every 100 ms whether the thread is needed elsewhere.
+  // `give_up` is asked every 100 ms, after the first second, whether the thread is needed
+  // elsewhere.
   template <class GiveUp>
   [[nodiscard]] bool wait_for_request(std::chrono::milliseconds idle, const GiveUp& give_up) {
     if (begin_ < end_) return true;
     constexpr std::chrono::milliseconds kTick{100};
+    constexpr std::chrono::milliseconds kLeast{900};
     for (std::chrono::milliseconds waited{0}; waited < idle; waited += kTick) {
       const Wait outcome = wait_readable(kTick);
       if (outcome != Wait::kTimeout) return outcome == Wait::kReady;
-      if (give_up()) return false;
+      if (waited >= kLeast && give_up()) return false;
     }
     return false;
   }
@@ -45,6 +50,8 @@ class ConnectionStream final : public httplib::Stream {
   // Tells the peer that no more will come and reads away what it still sends, for a while: closing
   // with unread data would destroy the answer on its way.
   void close_gently();
+  // Reads away what has come already; does not wait.
+  void discard_arrived();
 
   // httplib::Stream
   [[nodiscard]] bool is_readable() const override;
@@ -57,15 +64,16 @@ class ConnectionStream final : public httplib::Stream {
 
  private:
   enum class Wait : std::uint8_t { kReady, kTimeout, kFailed };
-  // Also ends, with kFailed, when the stop descriptor becomes readable.
+  // Also ends, with kFailed, when the server stops.
   [[nodiscard]] Wait wait_readable(std::chrono::milliseconds timeout) const;
-  // Waits within the limits; false: timed out or too slow on average.
+  // Waits within the limits; false: timed out, too slow on average, or the server stops and has no
+  // patience left.
   [[nodiscard]] bool wait_within_limits(short events,
                                         std::uint64_t bytes,
                                         std::chrono::nanoseconds& waited) const;
 
   socket_t socket_;
-  int stop_descriptor_;
+  const StopSignal& stop_;
   ConnectionLimits limits_;
   std::array<char, 16384> buffer_{};
   std::size_t begin_ = 0;  // unread bytes of buffer_: [begin_, end_)

@@ -1,7 +1,6 @@
 #include "server/http/http_server.hpp"
 
 #include <httplib.h>
-#include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -14,6 +13,7 @@
 #include "server/http/call.hpp"
 #include "server/http/connection.hpp"
 #include "server/http/problem_response.hpp"
+#include "server/http/stop_signal.hpp"
 #include "server/http/task_queue.hpp"
 
 namespace symcell::server {
@@ -22,6 +22,8 @@ namespace {
 constexpr int kListenBacklog = 511;
 constexpr std::size_t kMaxKeepAliveRequests = 1000;
 constexpr std::chrono::seconds kKeepAlive{15};
+// For requests under way when the server stops; the jobs have had their grace period before.
+constexpr std::chrono::seconds kStopPatience{3};
 
 // httplib's handlers get no data of the caller's; the thread that serves a connection leaves the
 // exchange here.
@@ -73,9 +75,7 @@ class HttpServer::Impl final : public httplib::Server {
         router_(router),
         metrics_(metrics),
         logger_(logger),
-        in_flight_(in_flight),
-        stop_descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-    if (stop_descriptor_ < 0) throw std::runtime_error("cannot create an eventfd");
+        in_flight_(in_flight) {
     set_payload_max_length(settings_.max_body_bytes);
     // SO_REUSEPORT, httplib's default, would let two servers share the port unnoticed.
     set_socket_options([](socket_t socket) {
@@ -91,10 +91,7 @@ class HttpServer::Impl final : public httplib::Server {
     set_handlers();
   }
 
-  ~Impl() override {
-    stop_accepting();
-    ::close(stop_descriptor_);
-  }
+  ~Impl() override { stop_accepting(); }
 
   int bind() {
     const int port = settings_.port == 0 ? bind_to_any_port(settings_.host)
@@ -117,11 +114,7 @@ class HttpServer::Impl final : public httplib::Server {
     ::close(listening);
   }
 
-  void wake_idle_connections() {
-    const std::uint64_t one = 1;
-    // Can only fail when the counter is full, and then it is readable anyhow.
-    static_cast<void>(::write(stop_descriptor_, &one, sizeof(one)) == sizeof(one));
-  }
+  void stop_connections() { stop_.raise(kStopPatience); }
 
  private:
   void set_headers() {
@@ -163,6 +156,11 @@ class HttpServer::Impl final : public httplib::Server {
     Patch(everything, with_body);
     Delete(everything, with_body);
     set_error_handler([](const httplib::Request& request, httplib::Response& response) {
+      if (current_exchange != nullptr && current_exchange->method.empty()) {
+        // The headers were not understood: where the next request begins is anyone's guess.
+        current_exchange->close = true;
+        response.set_header("Connection", "close");
+      }
       if (!response.body.empty()) return;
       // httplib refused by itself, before or after the dispatcher.
       const ServiceProblem problem = service_problem_for_status(response.status);
@@ -213,7 +211,7 @@ class HttpServer::Impl final : public httplib::Server {
   }
 
   bool process_and_close_socket(socket_t socket) override {
-    ConnectionStream stream(socket, stop_descriptor_, ConnectionLimits{});
+    ConnectionStream stream(socket, stop_, ConnectionLimits{});
     if (BoundedTaskQueue::overloaded()) {
       refuse_connection(stream);
     } else {
@@ -233,6 +231,7 @@ class HttpServer::Impl final : public httplib::Server {
         "Retry-After: 1\r\nConnection: close\r\nContent-Length: " +
         std::to_string(body.size()) + "\r\n\r\n" + body;
     stream.write(answer.data(), answer.size());
+    stream.discard_arrived();
     metrics_.count("symcell_http_refused_connections_total");
   }
 
@@ -270,8 +269,10 @@ class HttpServer::Impl final : public httplib::Server {
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - exchange.start).count();
     const std::string status = std::to_string(exchange.status);
-    const std::string_view route = exchange.route.empty() ? "none" : exchange.route;
-    const std::string_view method = exchange.method.empty() ? "none" : exchange.method;
+    const std::string_view route =
+        exchange.route.empty() ? "none" : std::string_view(exchange.route);
+    const std::string_view method =
+        exchange.method.empty() ? "none" : std::string_view(exchange.method);
     metrics_.count("symcell_http_requests_total",
                    {{"route", route}, {"method", method}, {"status", status}});
     metrics_.observe("symcell_http_request_duration_seconds", seconds, {{"route", route}});
@@ -291,7 +292,7 @@ class HttpServer::Impl final : public httplib::Server {
   Metrics& metrics_;
   Logger& logger_;
   std::atomic<std::size_t>& in_flight_;
-  int stop_descriptor_;
+  StopSignal stop_;
   BoundedTaskQueue* queue_ = nullptr;  // owned by httplib while it listens
 };
 
@@ -314,7 +315,7 @@ void HttpServer::run() {
 
 void HttpServer::stop() {
   impl_->stop_accepting();
-  impl_->wake_idle_connections();
+  impl_->stop_connections();
 }
 
 }  // namespace symcell::server

@@ -24,16 +24,18 @@ class Description:
                     yield method.upper(), path, {
                         **operation, "parameters": shared + operation.get("parameters", [])}
 
-    def references(self, node=None):
-        node = self.document if node is None else node
+    def references(self):
+        yield from self._references(self.document)
+
+    def _references(self, node):
         if isinstance(node, dict):
             if isinstance(node.get("$ref"), str):
                 yield node["$ref"]
             for value in node.values():
-                yield from self.references(value)
+                yield from self._references(value)
         elif isinstance(node, list):
             for value in node:
-                yield from self.references(value)
+                yield from self._references(value)
 
     def faults(self, value, schema, where="$"):
         """What in `value` breaks `schema`."""

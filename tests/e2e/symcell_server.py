@@ -59,7 +59,8 @@ class Server:
 
     def __init__(self, data_dir=None, **flags):
         self.data_dir = pathlib.Path(data_dir or tempfile.mkdtemp(prefix="symcell-e2e-"))
-        self.flags = {"workers": 2, "log_format": "json", "grace": 0, **flags}
+        self.flags = {"workers": 2, "log_format": "json", "grace": 0,
+                      "max_elements": 500_000_000, **flags}
         self.process = None
         self.port = None
 
@@ -154,7 +155,7 @@ def square():
 
 def long_options():
     """Options with which the square keeps a worker busy until it is stopped."""
-    return {"max_area": 1e-9, "max_elements": 1_000_000_000, "fold": 1}
+    return {"max_area": 1e-8, "max_elements": 500_000_000, "fold": 1}
 
 
 def corpus_entries():
