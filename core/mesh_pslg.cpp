@@ -62,7 +62,7 @@ Result<void> check_area_budget(const InitialTriangulation& start,
 void count_exempt(const QuotientTriangulation& mesh,
                   const Criteria& criteria,
                   Statistics& statistics) {
-  std::uint64_t count[4] = {};
+  std::uint64_t count[5] = {};
   for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {
     if (!mesh.alive(t)) continue;
     const Assessment a = criteria.assess(mesh, mesh.triangle(t));

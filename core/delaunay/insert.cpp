@@ -295,11 +295,25 @@ VertexId DelaunayEditor::insert_in_cavity(TriangleId t,
   minimal_.triangles.assign(1, {t, 0});
   minimal_.edges.clear();
   for (std::uint32_t j = 0; j < 3; ++j) append_side(3 * t + j, 0, minimal_);
-  if (!star_is_positive(x, minimal_)) return -1;
+  if (!star_is_positive(x, minimal_)) return insert_near_edge(t, x, kind);
   const VertexId v = place(x, minimal_, kind, true);
   queue_star_sides();
   legalise();
   return v;
+}
+
+// For x within rounding of an edge of t: circumcentres of right triangles, for instance.
+VertexId DelaunayEditor::insert_near_edge(TriangleId t, Point2 x, VertexKind kind) {
+  const Triangle& tri = mesh_.triangle(t);
+  for (std::uint32_t j = 0; j < 3; ++j) {
+    const Point2 a = mesh_.corner_point(tri, next3(j)), b = mesh_.corner_point(tri, prev3(j));
+    const double radius = std::max({internal::radius_bound(x), internal::radius_bound(a),
+                                    internal::radius_bound(b)});
+    if (certain_orientation(x, a, b, radius) == Sign::kPositive) continue;
+    if (tri.seg[j] != kNoSubsegment) return -1;
+    return split_edge(3 * t + j, x, kind);
+  }
+  return -1;
 }
 
 VertexId DelaunayEditor::insert_on_edge(HalfEdge h,
@@ -316,6 +330,16 @@ VertexId DelaunayEditor::insert_on_edge(HalfEdge h,
     if (seg != kNoSubsegment) split_subsegment(seg, v, cavity);
     return v;
   }
+  return split_edge(h, x, kind);
+}
+
+// One or two triangles become two or four, then flips.
+VertexId DelaunayEditor::split_edge(HalfEdge h, Point2 x, VertexKind kind) {
+  const TriangleId t = triangle_of(h);
+  const std::uint32_t j = local_of(h);
+  const SubsegmentId seg = mesh_.triangle(t).seg[j];
+  const HalfEdge g = mesh_.triangle(t).nb[j];
+  const bool two_sided = g != kNoHalfEdge;
   if (two_sided && triangle_of(g) == t) return split_self_adjacent(h, x, kind);
 
   minimal_.simple = false;

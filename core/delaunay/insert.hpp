@@ -107,6 +107,8 @@ class DelaunayEditor {
   void check_outside(Cavity& cavity) const;
   VertexId place(Point2 x, const Cavity& cavity, VertexKind kind, bool closed);
   void split_subsegment(SubsegmentId s, VertexId x, const Cavity& cavity);
+  VertexId insert_near_edge(TriangleId t, Point2 x, VertexKind kind);
+  VertexId split_edge(HalfEdge h, Point2 x, VertexKind kind);
   VertexId split_self_adjacent(HalfEdge h, Point2 x, VertexKind kind);
   void queue_star_sides();
 

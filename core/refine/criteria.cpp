@@ -27,7 +27,7 @@ Criteria::Criteria(const QuotientTriangulation& mesh,
   const double bound = options.min_angle_deg > 0 ? options.min_angle_deg + kAngleMarginDeg : 0;
   goal_angle_ = bound * kRadian;
   cos2_goal_ = bound > 0 ? std::cos(goal_angle_) * std::cos(goal_angle_) : 2.0;
-  cos_lens_ = std::cos(2 * goal_angle_);
+  cos_lens_ = std::cos(2 * std::max(goal_angle_, kLeastLensDeg * kRadian));
   shell_angle_ = std::max(kShellAngleDeg * kRadian, kShellFactor * goal_angle_);
   // The square of a length just inside the bound must not round to one outside.
   max_edge2_ = options.max_edge * options.max_edge * (1 - 1e-12);
@@ -36,8 +36,9 @@ Criteria::Criteria(const QuotientTriangulation& mesh,
     max_area_.push_back(std::min(options.max_area, s.max_area));
     has_size_bound_ = has_size_bound_ || max_area_.back() < kInfinity;
   }
-  centre_is_narrow_ =
-      mesh.centre() >= 0 && 360.0 / static_cast<double>(mesh.fold()) < options.min_angle_deg;
+  const double sector = 360.0 / static_cast<double>(mesh.fold());
+  centre_is_narrow_ = mesh.centre() >= 0 && sector < options.min_angle_deg;
+  centre_is_exact_ = mesh.centre() >= 0 && !centre_is_narrow_ && sector < bound;
   find_corners(mesh);
 }
 
@@ -159,6 +160,17 @@ bool Criteria::is_seditious(const QuotientTriangulation& mesh,
   return false;
 }
 
+namespace {
+
+bool is_self_adjacent(const Triangle& t, TriangleId id) {
+  for (const HalfEdge g : t.nb) {
+    if (g != kNoHalfEdge && triangle_of(g) == id) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 Exemption Criteria::exemption(const QuotientTriangulation& mesh,
                               TriangleId id,
                               const Assessment& assessment) const {
@@ -166,9 +178,11 @@ Exemption Criteria::exemption(const QuotientTriangulation& mesh,
   for (std::uint32_t i = 0; i < 3; ++i) {
     if (in_narrow_corner(mesh, t, i)) return Exemption::kSmallInputAngle;
   }
-  if (centre_is_narrow_) {
+  if (centre_is_narrow_ || centre_is_exact_) {
     for (const VertexId v : t.v) {
-      if (v == mesh.centre()) return Exemption::kFoldAngleAtCentre;
+      if (v != mesh.centre()) continue;
+      if (centre_is_narrow_) return Exemption::kFoldAngleAtCentre;
+      if (is_self_adjacent(t, id)) return Exemption::kMet;
     }
   }
   if (is_seditious(mesh, t, assessment)) return Exemption::kSeditious;

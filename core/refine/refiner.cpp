@@ -126,10 +126,13 @@ Result<void> Refiner::run() {
     if (!t) break;
     if (auto ok = tick(); !ok) return ok;
     switch (treat(*t)) {
-      case Outcome::kDone: break;
+      case Outcome::kExempt: break;
+      case Outcome::kDone:
       case Outcome::kRetry: {
+        // What was done near it may have left the triangle as it was.
+        if (!mesh_.alive(*t)) break;
         const Assessment a = criteria_.assess(mesh_, mesh_.triangle(*t));
-        queue_.push(mesh_, *t, a.shortest2);
+        if (a.verdict != Verdict::kGood) queue_.push(mesh_, *t, a.shortest2);
         break;
       }
       case Outcome::kStuck: return tl::unexpected<Error>(unreachable(*t));
@@ -258,7 +261,7 @@ Refiner::Outcome Refiner::treat(TriangleId t) {
                                       squared_distance(p[2], p[0])});
     if (cross(p[1] - p[0], p[2] - p[0]) <= 2 * criteria_.max_area(tri.face) &&
         longest2 <= criteria_.max_edge2()) {
-      return Outcome::kDone;
+      return Outcome::kExempt;
     }
   }
   if (a.shortest2 < shortest_allowed2_) return Outcome::kStuck;
@@ -369,7 +372,9 @@ bool Refiner::insert_sampled(TriangleId t, const Assessment& assessment) {
     const TriangleId home = triangle_of(where.half_edge);
     x = mesh_.rotations().rotate(x, mesh_.subtract(0, where.exponent));
     const auto y = good_star_near(home, x);
-    if (y && insert_at(home, *y, true, where.exponent) == Outcome::kDone) return true;
+    const bool replaces = std::any_of(cavity_.triangles.begin(), cavity_.triangles.end(),
+                                      [&](const CavityTriangle& c) { return c.t == t; });
+    if (y && replaces && insert_at(home, *y, true, where.exponent) == Outcome::kDone) return true;
   }
   return false;
 }

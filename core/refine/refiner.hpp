@@ -51,7 +51,7 @@ class Refiner {
   [[nodiscard]] StarSurgery& surgery() { return surgery_; }
 
  private:
-  enum class Outcome : std::uint8_t { kDone, kRetry, kStuck };
+  enum class Outcome : std::uint8_t { kDone, kExempt, kRetry, kStuck };
 
   void enqueue_all();
   void enqueue_subsegment(SubsegmentId s);
