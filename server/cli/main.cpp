@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 
 #include "api/version.hpp"
 #include "server/cli/commands.hpp"
@@ -14,6 +15,10 @@
 namespace {
 
 constexpr int kWrongUsage = 2;
+
+bool has_command(CLI::App& app, const std::string& name) {
+  return !app.get_subcommands([&](const CLI::App* c) { return c->get_name() == name; }).empty();
+}
 
 int run(int argc, char** argv) {
   CLI::App app(
@@ -30,6 +35,11 @@ int run(int argc, char** argv) {
   symcell::add_serve_command(app, exit_code);
 #endif
   symcell::cli::add_verify_command(app, exit_code);
+  // CLI11 would only say that a subcommand is missing.
+  if (argc > 1 && argv[1][0] != '-' && !has_command(app, argv[1])) {
+    std::fprintf(stderr, "symcell: there is no command \"%s\"; see symcell --help\n", argv[1]);
+    return kWrongUsage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

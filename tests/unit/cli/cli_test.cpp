@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "api/formats/vtu_reader.hpp"
+#include "tests/support/test_files.hpp"
+
+namespace symcell {
+namespace {
+
+using Json = nlohmann::json;
+
+class Cli : public testing::Test {
+ protected:
+  struct Outcome {
+    int exit_code;
+    std::string out;
+    std::string err;
+  };
+
+  // `arguments` as in a shell; `before` is put in front, for pipes.
+  Outcome symcell(const std::string& arguments, const std::string& before = "") {
+    const std::string out = (folder_ / "stdout").string();
+    const std::string err = (folder_ / "stderr").string();
+    const std::string command =
+        before + SYMCELL_PROGRAM + " " + arguments + " > " + out + " 2> " + err;
+    const int status = std::system(command.c_str());
+    return {WEXITSTATUS(status), test::read_file(out), test::read_file(err)};
+  }
+
+  static std::string model(const std::string& name) {
+    return test::data_file("models/" + name).string();
+  }
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+
+  test::TemporaryFolder folder_;
+  const std::string ring_ = model("p2_10_heptagon_ring_coarse_n7.json");
+};
+
+TEST_F(Cli, MeshesVerifiesAndTellsFigures) {
+  const Outcome mesh = symcell("mesh " + ring_ + " --cell " + file("c.vtu") + " --full " +
+                               file("f.vtu") + " --stats " + file("s.json"));
+  EXPECT_EQ(mesh.exit_code, 0) << mesh.err;
+  EXPECT_EQ(mesh.out, "");
+  EXPECT_EQ(mesh.err, "");  // no progress bar in a pipe
+  const Json stats = Json::parse(test::read_file(file("s.json")));
+  EXPECT_EQ(stats["symmetry"]["fold"], 7);
+  const auto cell = read_vtu(test::read_file(file("c.vtu")));
+  ASSERT_TRUE(cell);
+  EXPECT_EQ(cell->element_count(), stats["cell"]["elements"]);
+
+  const std::string meshes = file("c.vtu") + " --full " + file("f.vtu");
+  const Outcome verify = symcell("verify " + meshes + " --model " + ring_ + " --json");
+  EXPECT_EQ(verify.exit_code, 0) << verify.out;
+  EXPECT_EQ(Json::parse(verify.out)["ok"], true);
+
+  const Outcome other =
+      symcell("verify " + meshes + " --model " + model("p2_01_star_n5_tip12deg.json"));
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_NE(other.out.find("fail  model.vertices"), std::string::npos) << other.out;
+}
+
+TEST_F(Cli, FormatsFromEndings) {
+  for (const char* name : {"c.vtu", "c.json", "c.msh", "c.svg"}) {
+    const Outcome mesh = symcell("mesh " + ring_ + " --order 2 --cell " + file(name));
+    EXPECT_EQ(mesh.exit_code, 0) << mesh.err;
+    EXPECT_GT(test::read_file(file(name)).size(), 500U) << name;
+  }
+  EXPECT_EQ(symcell("mesh " + ring_ + " --cell " + file("c.stl")).exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(file("c.stl")));
+}
+
+TEST_F(Cli, StandardStreams) {
+  const Outcome json = symcell("mesh - --full - --format json", "cat " + ring_ + " | ");
+  EXPECT_EQ(json.exit_code, 0) << json.err;
+  EXPECT_EQ(Json::parse(json.out)["fold"], 7);
+  const Outcome vtu = symcell("mesh " + ring_ + " --cell -");
+  EXPECT_TRUE(read_vtu(vtu.out));
+  const Outcome figures = symcell("mesh " + ring_);
+  EXPECT_TRUE(Json::parse(figures.out).contains("cell"));
+  EXPECT_EQ(symcell("mesh " + ring_ + " --cell - --stats -").exit_code, 2);
+}
+
+TEST_F(Cli, SameInputAndOptionsSameBytes) {
+  const std::string mesh = "mesh " + model("p2_08_yinyang_n2_segment_through_centre.json") +
+                           " --max-area 0.5 --full - --format json";
+  EXPECT_EQ(symcell(mesh).out, symcell(mesh).out);
+}
+
+TEST_F(Cli, InspectsWithoutMeshing) {
+  const Outcome found = symcell("inspect " + ring_);
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_EQ(Json::parse(found.out)["fold"], 7);
+}
+
+TEST_F(Cli, ExitCodes) {
+  const std::pair<std::string, int> cases[] = {
+      {"", 2},
+      {"nonsense", 2},
+      {"mesh", 2},
+      {"mesh " + ring_ + " --no-such-option", 2},
+      {"mesh " + ring_ + " --fold 0", 2},
+      {"mesh " + ring_ + " --fold -3", 2},
+      {"mesh " + ring_ + " --fold 2.5", 2},
+      {"mesh " + ring_ + " --fold four", 2},
+      {"mesh " + ring_ + " --min-angle 43", 2},
+      {"mesh " + ring_ + " --radius-edge 2", 2},
+      {"mesh " + ring_ + " --seed 1 --seed 2", 2},
+      {"mesh /nowhere/model.json", 3},
+      {"mesh " + model("b01_star5_declared_6.json") + " --fold 6", 3},
+      {"mesh " + model("b21_empty.json"), 3},
+      {"mesh " + model("b26_html_page.stl"), 3},
+      {"mesh " + ring_ + " --max-elements 3", 4},
+      {"mesh " + ring_ + " --max-area 1e-30", 4},
+      {"mesh " + ring_ + " --cell /nowhere/cell.vtu", 1},
+      {"verify " + ring_, 3},
+      {"--help", 0},
+      {"mesh --help", 0},
+      {"inspect --help", 0},
+      {"verify --help", 0},
+      {"--version", 0}};
+  for (const auto& [arguments, code] : cases) {
+    const Outcome outcome = symcell(arguments);
+    EXPECT_EQ(outcome.exit_code, code) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(outcome.err.empty(), code == 0) << arguments;
+    EXPECT_TRUE(code == 0 || outcome.err.starts_with("symcell: ")) << arguments << outcome.err;
+  }
+}
+
+TEST_F(Cli, ErrorsAsProblemDocuments) {
+  const Outcome outcome = symcell("mesh " + model("b07_index_negative.json") +
+                                  " --json-errors --cell " + file("c.vtu"));
+  EXPECT_EQ(outcome.exit_code, 3);
+  const Json problem = Json::parse(outcome.err);
+  EXPECT_EQ(problem["code"], "index_out_of_range");
+  EXPECT_EQ(problem["errors"][0]["pointer"], "/model/segments/5");
+}
+
+TEST_F(Cli, FailedRunsLeaveOldFilesAndNoNewOnes) {
+  test::write_file(file("c.vtu"), "old");
+  EXPECT_EQ(symcell("mesh " + ring_ + " --max-elements 3 --cell " + file("c.vtu")).exit_code, 4);
+  EXPECT_EQ(test::read_file(file("c.vtu")), "old");
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+    (void)entry;
+    ++files;
+  }
+  EXPECT_EQ(files, 3U);  // the old one, standard output and error
+}
+
+}  // namespace
+}  // namespace symcell
