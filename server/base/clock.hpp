@@ -11,4 +11,7 @@ namespace symcell::server {
 // RFC 3339 with milliseconds: "2024-05-01T12:00:00.123Z".
 [[nodiscard]] std::string format_timestamp(std::int64_t ms);
 
+// As HTTP wants it: "Wed, 01 May 2024 12:00:00 GMT".
+[[nodiscard]] std::string format_http_date(std::int64_t ms);
+
 }  // namespace symcell::server

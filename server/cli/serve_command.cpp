@@ -201,6 +201,7 @@ int serve(const ServeFlags& flags) {
   auto service = std::make_unique<server::Service>(settings, engine, logger);
   const int port = service->start();
   write_port_file(flags.port_file, port);
+  std::cout << "symcell: listening on http://" << settings.http.host << ":" << port << std::endl;
   const std::string data_directory = settings.data_directory.string();
   logger.info("listening", {{"host", settings.http.host},
                             {"port", std::int64_t{port}},

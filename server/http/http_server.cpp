@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "server/base/clock.hpp"
 #include "server/base/identifiers.hpp"
 #include "server/http/call.hpp"
 #include "server/http/connection.hpp"
@@ -169,6 +170,11 @@ class HttpServer::Impl final : public httplib::Server {
           "application/problem+json");
     });
     set_post_routing_handler([](const httplib::Request&, httplib::Response& response) {
+      response.set_header("Date", format_http_date(now_ms()));
+      // httplib adds a length of 0, which says something wrong about these.
+      if (response.status == 204 || response.status == 304) {
+        response.headers.erase("Content-Length");
+      }
       if (current_exchange == nullptr) return;
       response.set_header("X-Request-Id", current_exchange->request_id);
       current_exchange->status = response.status;

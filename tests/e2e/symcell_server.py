@@ -79,6 +79,7 @@ class Server:
 
         def listening():
             if self.process.poll() is not None:
+                self.log.close()
                 raise AssertionError("the server ended:\n" + self.log_text())
             return port_file.exists()
 

@@ -50,6 +50,13 @@ TEST_F(ProtocolHttpTest, AnswersCarrySecurityHeadersAndNoCors) {
   EXPECT_FALSE(answer->has_header("Access-Control-Allow-Origin"));
 }
 
+TEST_F(ProtocolHttpTest, AnswersWithoutBodyTellNoLength) {
+  const auto answer = client().Options("/v1/jobs");
+  ASSERT_TRUE(answer);
+  EXPECT_FALSE(answer->has_header("Content-Length"));
+  EXPECT_TRUE(answer->get_header_value("Date").ends_with(" GMT"));
+}
+
 TEST_F(ProtocolHttpTest, AConnectionServesSeveralRequests) {
   RawConnection connection(port());
   for (int i = 0; i < 3; ++i) {
