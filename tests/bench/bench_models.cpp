@@ -10,8 +10,8 @@ namespace symcell::bench {
 namespace {
 
 // Mean area of a triangle as a share of the bound, measured.
-constexpr double kMeanAreaPlain = 0.5;
-constexpr double kMeanArea = 0.67;
+constexpr double kMeanAreaPlain = 0.635;
+constexpr double kMeanArea = 0.83;
 
 template <class T>
 T value_of(Result<T> result) {

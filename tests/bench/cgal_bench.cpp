@@ -95,7 +95,8 @@ BENCHMARK(whole_model_cgal)->Unit(benchmark::kMillisecond);
 
 void cell_and_restoration(benchmark::State& state) {
   const Pslg model = flange_of(kFold);
-  const MeshOptions options = sized_options(model, kFold, kTriangles, state.range(0) != 0);
+  MeshOptions options = sized_options(model, kFold, kTriangles, true);
+  options.plain = state.range(0) != 0;
   std::uint64_t bytes = 0;
   MeshOutcome outcome;
   for (auto _ : state) {

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -69,6 +70,8 @@ void full_file(benchmark::State& state) {
                                  std::to_string(options.max_area),
                                  "--full",
                                  folder / "full.vtu",
+                                 "--stats",
+                                 folder / "stats.json",
                                  "--quiet"};
   if (plain) words.emplace_back("--plain");
   Child child;
@@ -79,6 +82,8 @@ void full_file(benchmark::State& state) {
       return;
     }
   }
+  std::ifstream stats(folder / "stats.json");
+  state.counters["full"] = nlohmann::json::parse(stats)["full"]["elements"].get<double>();
   state.counters["peak_mib"] = static_cast<double>(child.usage.ru_maxrss) / 1024;
   state.counters["file_mib"] =
       static_cast<double>(std::filesystem::file_size(folder / "full.vtu")) / (1 << 20);
