@@ -88,8 +88,7 @@ std::vector<Edge> unique_edges(const SymmetryCellMesh& cell) {
     }
   }
   std::ranges::sort(edges);
-  const auto rest = std::ranges::unique(edges);
-  edges.erase(rest.begin(), rest.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;
 }
 

@@ -98,8 +98,8 @@ class Elevation {
     }
     const auto by_nodes = [](const Edge& e) { return std::pair(e.low, e.high); };
     std::ranges::sort(edges_, {}, by_nodes);
-    const auto rest = std::ranges::unique(edges_, {}, by_nodes);
-    edges_.erase(rest.begin(), rest.end());
+    const auto same = [&](const Edge& a, const Edge& b) { return by_nodes(a) == by_nodes(b); };
+    edges_.erase(std::unique(edges_.begin(), edges_.end(), same), edges_.end());
     for (Edge& e : edges_) {
       e.turned = turned(mesh_.nodes[static_cast<std::size_t>(e.low)],
                         mesh_.nodes[static_cast<std::size_t>(e.high)]);
