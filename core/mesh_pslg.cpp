@@ -59,21 +59,29 @@ Result<void> check_area_budget(const InitialTriangulation& start,
                   "; raise max_area (or the regions' max_area) or max_elements");
 }
 
-void count_exempt(const QuotientTriangulation& mesh,
-                  const Criteria& criteria,
-                  Statistics& statistics) {
+// Counts the exempt by reason. What is bad and not exempt must not be handed out.
+Result<void> count_exempt(const QuotientTriangulation& mesh,
+                          const Criteria& criteria,
+                          Statistics& statistics) {
   std::uint64_t count[5] = {};
   for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {
     if (!mesh.alive(t)) continue;
     const Assessment a = criteria.assess(mesh, mesh.triangle(t));
-    if (a.verdict != Verdict::kAngle) continue;
-    ++count[static_cast<std::size_t>(criteria.exemption(mesh, t, a))];
+    if (a.verdict == Verdict::kGood) continue;
+    const Exemption why =
+        a.verdict == Verdict::kAngle ? criteria.exemption(mesh, t, a) : Exemption::kNone;
+    if (why == Exemption::kNone) {
+      return fail(ErrorCode::kInternal,
+                  "triangle " + std::to_string(t) + " of the finished mesh breaks a bound");
+    }
+    ++count[static_cast<std::size_t>(why)];
   }
   constexpr const char* kReasons[4] = {"", "small_input_angle", "across_small_input_angle",
                                        "fold_angle_at_centre"};
   for (std::size_t i = 1; i < 4; ++i) {
     if (count[i] > 0) statistics.exempt.push_back({kReasons[i], count[i]});
   }
+  return {};
 }
 
 }  // namespace
@@ -121,10 +129,12 @@ Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
     start->mesh = initial;
     criteria = initial_criteria;
   }
+  start->mesh.compact();
   Coarsener coarsener(editor, criteria, refiner->surgery(), context);
   if (!options.plain) {
     if (auto ok = coarsener.run(); !ok) return tl::unexpected<Error>(ok.error());
   }
+  if (!options.plain) start->mesh.compact();
   if (auto ok = validate(start->mesh, ValidationLevel::kDelaunay); !ok) {
     return tl::unexpected<Error>(ok.error());
   }
@@ -136,7 +146,9 @@ Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
   outcome.mesh = build_cell_mesh(*start, *cut, *symmetric);
   if (options.order == 2) outcome.mesh = elevate_to_quadratic(outcome.mesh);
   measure_cell_2(outcome.mesh, stats);
-  count_exempt(start->mesh, criteria, stats);
+  if (auto ok = count_exempt(start->mesh, criteria, stats); !ok) {
+    return tl::unexpected<Error>(ok.error());
+  }
   stats.timings_ms.cell = watch.lap();
 
   stats.symmetry.fold = symmetric->fold;

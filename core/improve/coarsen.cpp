@@ -15,6 +15,8 @@ constexpr std::size_t kVertexVisits = 60'000;
 // Moves tried to mend one removal before it is taken back.
 constexpr int kMendingMoves = 6;
 constexpr std::size_t kMostBadToMend = 8;
+// A star this much too large for the area bound may still lose its vertex: mending moves neighbours.
+constexpr double kRoomSlack = 1.2;
 
 }  // namespace
 
@@ -34,25 +36,39 @@ bool Coarsener::is_steiner(VertexId v) const {
          mesh_.corner_of(v) != kNoHalfEdge;
 }
 
+// Steiner points in the order of the triangle slots: neighbours one after another, if the slots are
+// in spatial order.
+std::vector<VertexId> Coarsener::visiting_order() const {
+  std::vector<VertexId> order;
+  std::vector<std::uint8_t> met(mesh_.vertex_slots(), 0);
+  for (TriangleId t = 0; t < mesh_.triangle_slots(); ++t) {
+    if (!mesh_.alive(t)) continue;
+    for (const VertexId v : mesh_.triangle(t).v) {
+      std::uint8_t& seen = met[static_cast<std::size_t>(v)];
+      if (seen == 0 && is_steiner(v)) order.push_back(v);
+      seen = 1;
+    }
+  }
+  return order;
+}
+
 Result<void> Coarsener::run() {
   if (criteria_.goal_angle() <= 0) return {};
-  std::size_t points = 0;
-  for (std::size_t v = 0; v < mesh_.vertex_slots(); ++v) {
-    points += is_steiner(static_cast<VertexId>(v)) ? 1 : 0;
-  }
+  const std::vector<VertexId> order = visiting_order();
+  const std::size_t points = order.size();
   if (points == 0) return {};
   const int rounds = static_cast<int>(
       std::clamp<std::size_t>(kVertexVisits / points, 1, static_cast<std::size_t>(kMaxRounds)));
   constexpr std::size_t kCheckInterval = 64;
   for (int round = 0; round < rounds; ++round) {
     std::size_t gained = 0;
-    for (std::size_t i = 0; i < mesh_.vertex_slots(); ++i) {
+    for (std::size_t i = 0; i < order.size(); ++i) {
       if (i % kCheckInterval == 0) {
         const auto elements = static_cast<std::uint64_t>(mesh_.triangle_count());
         context_.report(Phase::kImprove, 0.7 + 0.2 * (round + 1.0) / rounds, elements, 1);
         if (auto ok = context_.check(elements); !ok) return ok;
       }
-      const auto v = static_cast<VertexId>(i);
+      const VertexId v = order[i];
       if (!is_steiner(v)) continue;
       if (merge_with_neighbour(v)) {
         ++counters_.merged;
@@ -70,33 +86,30 @@ Result<void> Coarsener::run() {
 }
 
 // The neighbours of v, in its frame.
-std::size_t Coarsener::link_of(VertexId v, std::vector<Corner>& link) const {
-  link.clear();
+void Coarsener::gather_link(VertexId v) {
+  link_.clear();
   StarItem item = star_item(mesh_, mesh_.corner_of(v));
   to_star_begin(mesh_, item);
   const StarItem begin = item;
   for (;;) {
-    link.push_back(star_corner(mesh_, item, 1));
+    link_.push_back(star_corner(mesh_, item, 1));
     const StarItem last = item;
     if (!rotate_ccw(mesh_, item)) {
-      link.push_back(star_corner(mesh_, last, 2));
-      return link.size() - 1;
+      link_.push_back(star_corner(mesh_, last, 2));
+      return;
     }
-    if (item.t == begin.t && item.i == begin.i) return link.size();
+    if (item.t == begin.t && item.i == begin.i) return;
   }
 }
 
 bool Coarsener::merge_with_neighbour(VertexId v) {
-  const std::size_t degree = link_of(v, link_);
-  const std::size_t most = surgery_.most_edges() + 4;
+  gather_link(v);
   for (const Corner& w : link_) {
     if (w.v == v || !is_steiner(w.v)) continue;
     const bool v_free = mesh_.kind(v) == VertexKind::kFree;
     const bool w_free = mesh_.kind(w.v) == VertexKind::kFree;
     if (!v_free && !w_free && v > w.v) continue;  // looked at from the other end
     if (v_free && w_free && v > w.v) continue;
-    const std::size_t sum = degree + link_of(w.v, other_link_);
-    if (sum > most) continue;
     // The one on a segment, if any, goes first; its frame is the one used.
     const bool ok = v_free && !w_free
                         ? surgery_.merge({w.v, 0}, {v, mesh_.subtract(0, w.k)})
@@ -114,7 +127,24 @@ void Coarsener::collect_bad(std::vector<TriangleId>& bad) const {
   }
 }
 
+// Whether the star of a free vertex, left with two triangles fewer, could keep the area bound.
+bool Coarsener::has_room_without(VertexId v) {
+  const double bound = criteria_.max_area(mesh_.triangle(triangle_of(mesh_.corner_of(v))).face);
+  if (bound == kInfinity) return true;
+  gather_link(v);
+  const Point2 p = mesh_.point(v);
+  double doubled = 0;
+  Point2 last = mesh_.lift(link_.back().v, link_.back().k) - p;
+  for (const Corner& c : link_) {
+    const Point2 next = mesh_.lift(c.v, c.k) - p;
+    doubled += cross(last, next);
+    last = next;
+  }
+  return doubled <= kRoomSlack * 2 * bound * (static_cast<double>(link_.size()) - 2);
+}
+
 bool Coarsener::remove_and_mend(VertexId v) {
+  if (mesh_.kind(v) == VertexKind::kFree && !has_room_without(v)) return false;
   mesh_.begin();
   const bool removed = mesh_.kind(v) == VertexKind::kFree ? surgery_.remove(v)
                                                            : surgery_.unsplit(v);

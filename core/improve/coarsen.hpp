@@ -38,9 +38,11 @@ class Coarsener {
  private:
   [[nodiscard]] bool is_steiner(VertexId v) const;
   [[nodiscard]] bool merge_with_neighbour(VertexId v);
+  [[nodiscard]] bool has_room_without(VertexId v);
   [[nodiscard]] bool remove_and_mend(VertexId v);
   [[nodiscard]] bool mend();
-  [[nodiscard]] std::size_t link_of(VertexId v, std::vector<Corner>& link) const;
+  [[nodiscard]] std::vector<VertexId> visiting_order() const;
+  void gather_link(VertexId v);
   void collect_bad(std::vector<TriangleId>& bad) const;
 
   DelaunayEditor& editor_;
@@ -49,7 +51,7 @@ class Coarsener {
   StarSurgery& surgery_;
   ExecutionContext& context_;
   CoarsenCounters counters_;
-  std::vector<Corner> link_, other_link_;
+  std::vector<Corner> link_;
   std::vector<TriangleId> bad_;
 };
 

@@ -180,8 +180,28 @@ std::uint32_t QuotientTriangulation::new_epoch() {
   return epoch_;
 }
 
-void QuotientTriangulation::reorder(const std::vector<TriangleId>& order) {
-  SYMCELL_ASSERT(!journal_.active && order.size() == live_triangles_);
+std::vector<TriangleId> QuotientTriangulation::breadth_first_order() {
+  const std::uint32_t epoch = new_epoch();
+  std::vector<TriangleId> order;
+  order.reserve(live_triangles_);
+  for (TriangleId seed = 0; seed < triangles_.size(); ++seed) {
+    if (!alive(seed) || triangles_[seed].stamp == epoch) continue;
+    triangles_[seed].stamp = epoch;
+    order.push_back(seed);
+    for (std::size_t head = order.size() - 1; head < order.size(); ++head) {
+      for (const HalfEdge g : triangles_[order[head]].nb) {
+        if (g == kNoHalfEdge || triangles_[triangle_of(g)].stamp == epoch) continue;
+        triangles_[triangle_of(g)].stamp = epoch;
+        order.push_back(triangle_of(g));
+      }
+    }
+  }
+  return order;
+}
+
+void QuotientTriangulation::compact() {
+  SYMCELL_ASSERT(!journal_.active);
+  const std::vector<TriangleId> order = breadth_first_order();
   std::vector<TriangleId> place(triangles_.size(), 0);
   for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<TriangleId>(i);
   const auto moved = [&](HalfEdge h) {

@@ -161,9 +161,9 @@ class QuotientTriangulation {
   // Next visit mark for Triangle::stamp.
   std::uint32_t new_epoch();
 
-  // Rewrites slots so that live ones are contiguous and neighbours in space are near in memory.
-  // `order`: live triangles in their new order.
-  void reorder(const std::vector<TriangleId>& order);
+  // Rewrites triangle slots in breadth-first order, without gaps: neighbours come to lie near one
+  // another in memory, and the order does not tell how the mesh was made.
+  void compact();
 
   // Transactions: between begin and commit or rollback every change of triangles, vertices and
   // subsegments made through `touch` and the functions above can be taken back.
@@ -183,6 +183,8 @@ class QuotientTriangulation {
   }
 
  private:
+  [[nodiscard]] std::vector<TriangleId> breadth_first_order();
+
   struct SavedVertex {
     VertexId id;
     Point2 point;
