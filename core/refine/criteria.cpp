@@ -152,9 +152,11 @@ bool Criteria::is_seditious(const QuotientTriangulation& mesh,
     for (const Corner& b : {shifted(r.a, t.k[j]), shifted(r.b, t.k[j])}) {
       if (!(a == b) || !is_narrow(a.v)) continue;
       const Point2 apex = mesh.lift(a.v, a.k);
-      const double ra = distance(apex, mesh.corner_point(t, i));
-      const double rb = distance(apex, mesh.corner_point(t, j));
-      if (std::abs(ra - rb) <= kShellRatio * ra) return true;
+      const Point2 p = mesh.corner_point(t, i) - apex, q = mesh.corner_point(t, j) - apex;
+      const double rp = length(p), rq = length(q);
+      // The apex has a narrow corner, but it must be the one between these two segments.
+      const bool narrow = dot(p, q) > std::cos(goal_angle_) * rp * rq;
+      if (narrow && std::abs(rp - rq) <= kShellRatio * rp) return true;
     }
   }
   return false;

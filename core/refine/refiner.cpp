@@ -240,9 +240,7 @@ Result<void> Refiner::split(SubsegmentId s) {
 
 // The star of a point that is not the one its cavity was made for need not be Delaunay.
 void Refiner::settle_star() {
-  for (const TriangleId t : editor_.star()) {
-    for (std::uint32_t j = 0; j < 3; ++j) editor_.queue_edge(3 * t + j);
-  }
+  editor_.queue_star();
   editor_.legalise();
 }
 

@@ -150,9 +150,12 @@ bool StarSurgery::relocate(VertexId v) {
   mesh_.touch_vertex(v);
   mesh_.move_vertex(v, *x);
   editor_.created().clear();
-  for (const CavityTriangle& c : cavity_.triangles) {
-    editor_.created().push_back(c.t);
-    for (std::uint32_t j = 0; j < 3; ++j) editor_.queue_edge(3 * c.t + j);
+  for (const CavityEdge& side : cavity_.edges) {
+    // The side and one spoke of each triangle are all edges of the star.
+    const TriangleId t = triangle_of(side.was);
+    editor_.created().push_back(t);
+    editor_.queue_edge(side.was);
+    editor_.queue_edge(3 * t + next3(local_of(side.was)));
   }
   editor_.legalise();
   return keep_if_sizes_hold(transaction);
@@ -180,9 +183,7 @@ bool StarSurgery::keep_if_sizes_hold(bool transaction) {
 
 void StarSurgery::finish_star() {
   editor_.created().assign(editor_.star().begin(), editor_.star().end());
-  for (const TriangleId t : editor_.star()) {
-    for (std::uint32_t j = 0; j < 3; ++j) editor_.queue_edge(3 * t + j);
-  }
+  editor_.queue_star();
   editor_.legalise();
 }
 
