@@ -1,8 +1,13 @@
 #include "core/initial/full_cdt.hpp"
 
+#include <CGAL/Spatial_sort_traits_adapter_2.h>
+#include <CGAL/property_map.h>
+#include <CGAL/spatial_sort.h>
+
+#include <algorithm>
 #include <exception>
+#include <numeric>
 #include <string>
-#include <utility>
 
 #include "core/geometry/rotation.hpp"
 
@@ -24,40 +29,62 @@ struct Handles {
   }
 };
 
-Result<Handles> insert_vertices(const SymmetricPslg& pslg, FullCdt& full) {
+// All copies of all vertices, orbit by orbit. Whether the centre lies in the domain is known only
+// after flooding: it is taken in here and dropped later.
+std::vector<Point> lift_vertices(const SymmetricPslg& pslg,
+                                 FullCdt& full,
+                                 Handles& handles,
+                                 std::vector<OrbitVertex>& ids) {
   const RotationTable rotations(pslg.fold);
   full.centre_orbit = pslg.centre_orbit;
   full.orbit_count = static_cast<std::int32_t>(pslg.orbit_points.size());
-  std::vector<std::pair<Point, OrbitVertex>> points;
+  std::vector<Point> points;
   points.reserve(pslg.orbit_points.size() * static_cast<std::size_t>(pslg.fold) + 1);
-  Handles handles;
-  std::size_t next = 0;
   for (std::int32_t o = 0; o < full.orbit_count; ++o) {
+    handles.first.push_back(points.size());
     const std::int32_t copies = o == pslg.centre_orbit ? 1 : pslg.fold;
-    handles.first.push_back(next);
     for (std::int32_t k = 0; k < copies; ++k) {
       const Point2 p = rotations.rotate(pslg.orbit_points[static_cast<std::size_t>(o)], k);
-      points.push_back({Point(p.x, p.y), OrbitVertex{o, k}});
+      points.emplace_back(p.x, p.y);
+      ids.push_back({o, k});
     }
-    next += static_cast<std::size_t>(copies);
   }
-  // Whether the centre lies in the domain is known only after flooding: take it in, drop it later.
   if (pslg.fold > 1 && pslg.centre_orbit < 0) {
+    handles.first.push_back(points.size());
     full.centre_orbit = full.orbit_count++;
-    handles.first.push_back(next++);
-    points.push_back({Point(0, 0), OrbitVertex{full.centre_orbit, 0}});
+    points.emplace_back(0, 0);
+    ids.push_back({full.centre_orbit, 0});
   }
-  full.cdt.insert(points.begin(), points.end());
+  return points;
+}
+
+// Inserts along a space-filling curve, looking at the context on the way.
+Result<Handles> insert_vertices(const SymmetricPslg& pslg,
+                                ExecutionContext& context,
+                                FullCdt& full) {
+  Handles handles;
+  std::vector<OrbitVertex> ids;
+  const std::vector<Point> points = lift_vertices(pslg, full, handles, ids);
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  using Map = CGAL::Pointer_property_map<Point>::const_type;
+  using Traits = CGAL::Spatial_sort_traits_adapter_2<Kernel, Map>;
+  CGAL::spatial_sort(order.begin(), order.end(), Traits(CGAL::make_property_map(points)));
+  handles.handle.resize(points.size());
+  FaceHandle hint;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i % kCheckInterval == 0) {
+      if (auto ok = context.check(); !ok) return tl::unexpected<Error>(ok.error());
+    }
+    const VertexHandle v = full.cdt.insert(points[order[i]], hint);
+    v->info() = ids[order[i]];
+    handles.handle[order[i]] = v;
+    hint = v->face();
+  }
   if (full.cdt.number_of_vertices() != points.size()) {
     return fail(ErrorCode::kDuplicateVertices,
                 "vertices coincide once the model is made symmetric; lower symmetry_tolerance or "
                 "merge vertices that lie closer than it");
-  }
-  handles.handle.resize(next);
-  for (auto v = full.cdt.finite_vertices_begin(); v != full.cdt.finite_vertices_end(); ++v) {
-    const OrbitVertex id = v->info();
-    handles.handle[handles.first[static_cast<std::size_t>(id.orbit)] +
-                   static_cast<std::size_t>(id.exponent)] = v;
   }
   return handles;
 }
@@ -143,7 +170,7 @@ void apply_seeds(const SymmetricPslg& pslg, FullCdt& full) {
 
 Result<void> build_full_cdt(const SymmetricPslg& pslg, ExecutionContext& context, FullCdt& full) {
   try {
-    auto handles = insert_vertices(pslg, full);
+    auto handles = insert_vertices(pslg, context, full);
     if (!handles) return tl::unexpected<Error>(handles.error());
     if (full.cdt.dimension() < 2) {
       return fail(ErrorCode::kDegenerateGeometry, "all vertices lie on one line: there is no area");
