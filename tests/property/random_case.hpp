@@ -1,0 +1,35 @@
+// One random meshing task, told by its seed alone: a symmetric model and options for it.
+#pragma once
+
+#include <cstdint>
+#include <ostream>
+
+#include "core/model/mesh_options.hpp"
+#include "core/model/pslg.hpp"
+#include "tests/support/pslg_builders.hpp"
+
+namespace symcell {
+
+struct RandomCase {
+  std::uint64_t seed = 0;
+  Pslg model;
+  RandomPslgTraits traits;
+  MeshOptions options;
+  // Whether a mesh must come out: plain refinement is only sure to end for moderate angles.
+  bool must_succeed = true;
+};
+
+[[nodiscard]] RandomCase make_random_case(std::uint64_t seed);
+
+// How to get the case again, for failure messages.
+std::ostream& operator<<(std::ostream& out, const RandomCase& c);
+
+// Cases a property test runs over: `usual` of them, or SYMCELL_PROPERTY_RUNS; the first seed is 0,
+// or SYMCELL_PROPERTY_SEED.
+struct SeedRange {
+  std::uint64_t begin = 0;
+  std::uint64_t end = 0;
+};
+[[nodiscard]] SeedRange property_seeds(std::uint64_t usual);
+
+}  // namespace symcell
