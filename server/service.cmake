@@ -58,4 +58,5 @@ target_link_libraries(
   PUBLIC symcell_api symcell_numerics Boost::headers Threads::Threads
   PRIVATE symcell_warnings PkgConfig::HTTPLIB OpenSSL::Crypto spdlog::spdlog SQLiteCpp ZLIB::ZLIB)
 
-install(FILES ${PROJECT_SOURCE_DIR}/openapi.yaml TYPE DATA)
+include(GNUInstallDirs)
+install(FILES ${PROJECT_SOURCE_DIR}/openapi.yaml DESTINATION ${CMAKE_INSTALL_DATADIR}/symcell)

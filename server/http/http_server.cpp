@@ -77,7 +77,8 @@ class HttpServer::Impl final : public httplib::Server {
         metrics_(metrics),
         logger_(logger),
         in_flight_(in_flight) {
-    set_payload_max_length(settings_.max_body_bytes);
+    // A second line only: the body reader counts exactly, and forms need some room for headers.
+    set_payload_max_length(settings_.max_body_bytes + (1UL << 20U));
     // SO_REUSEPORT, httplib's default, would let two servers share the port unnoticed.
     set_socket_options([](socket_t socket) {
       const int yes = 1;

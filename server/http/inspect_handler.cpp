@@ -20,16 +20,17 @@ void inspect(Call& call, ServiceContext& context) {
     respond_problem(call, ServiceProblem::kStopping, "the server is stopping");
     return;
   }
-  // An inspection works in the HTTP thread; the places keep threads and processors for others.
+  const auto request = receive_model_request(call, context.jobs.files(),
+                                             std::min(kMaxInspectBytes, context.max_body_bytes));
+  if (!request) return;
+  // An inspection works in the HTTP thread; the places keep threads and processors for others. Not
+  // taken before the body is here: slow senders would hold them all.
   const Slots::Slot place = context.inspections.try_take();
   if (!place) {
     respond_problem(call, ServiceProblem::kTooManyStreams,
                     "too many inspections at once; try again shortly");
     return;
   }
-  const auto request = receive_model_request(call, context.jobs.files(),
-                                             std::min(kMaxInspectBytes, context.max_body_bytes));
-  if (!request) return;
   ExecutionContext execution;
   execution.set_time_limit(std::min(kMaxInspectSeconds, request->options.time_limit_s));
   const MappedFile model(request->model.path());

@@ -67,6 +67,14 @@ TEST_F(UploadsHttpTest, AFormCarriesModelAndOptions) {
   EXPECT_EQ(model->body, square_json());
 }
 
+TEST_F(UploadsHttpTest, AFormsModelMayBeAsLargeAsAnyOther) {
+  const std::string largest = std::string((1UL << 20U) - square_json().size(), ' ') + square_json();
+  const httplib::MultipartFormDataItems fits{{"model", largest, "a.json", ""}};
+  EXPECT_EQ(client().Post("/v1/jobs", fits)->status, 202);
+  const httplib::MultipartFormDataItems too_large{{"model", largest + " ", "a.json", ""}};
+  problem_of(client().Post("/v1/jobs", too_large), 413);
+}
+
 TEST_F(UploadsHttpTest, FaultyFormsAreToldWhy) {
   const httplib::MultipartFormDataItems no_model{{"options", "{}", "", ""}};
   EXPECT_EQ(problem_of(client().Post("/v1/jobs", no_model), 400)["code"], "missing_field");
