@@ -115,7 +115,8 @@ Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
   DelaunayEditor editor(start->mesh);
   std::optional<Refiner> refiner;
   for (int attempt = 0;; ++attempt) {
-    const bool sample = !options.plain && (attempt > 0 || options.min_angle_deg >= kSamplingAngleDeg);
+    const bool sample =
+        !options.plain && (attempt > 0 || options.min_angle_deg >= kSamplingAngleDeg);
     refiner.emplace(editor, criteria,
                     Refiner::Settings{symmetric->center, !options.plain, sample ? kSamples : 0,
                                       options.seed + static_cast<std::uint64_t>(attempt)},

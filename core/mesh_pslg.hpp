@@ -1,5 +1,5 @@
-// The planar pipeline: validate, symmetrise, initial triangulation, quotient, refine, improve, cell,
-// statistics. The full mesh is streamed from the result by FullMeshView.
+// The planar pipeline: validate, symmetrise, initial triangulation, quotient, refine, improve,
+// cell, statistics. The full mesh is streamed from the result by FullMeshView.
 #pragma once
 
 #include "core/base/error.hpp"

@@ -6,7 +6,7 @@ namespace symcell::internal {
 [[noreturn]] void assertion_failed(const char* expression, const char* file, int line) noexcept;
 }
 
-#define SYMCELL_ASSERT(expression)                                                  \
-  (static_cast<bool>(expression)                                                    \
-       ? void(0)                                                                    \
+#define SYMCELL_ASSERT(expression) \
+  (static_cast<bool>(expression)   \
+       ? void(0)                   \
        : ::symcell::internal::assertion_failed(#expression, __FILE__, __LINE__))

@@ -61,9 +61,9 @@ enum class ErrorCode : std::uint16_t {
 
 struct Error {
   ErrorCode code = ErrorCode::kInternal;
-  std::string message;                  // one line: what, where, how to mend
-  std::vector<std::int64_t> elements;   // ids of the entities at fault, in input numbering
-  std::string pointer;                  // JSON pointer into the model, e.g. "/segments/3"
+  std::string message;                 // one line: what, where, how to mend
+  std::vector<std::int64_t> elements;  // ids of the entities at fault, in input numbering
+  std::string pointer;                 // JSON pointer into the model, e.g. "/segments/3"
 };
 
 template <class T>

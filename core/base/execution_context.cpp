@@ -28,8 +28,8 @@ void ExecutionContext::set_time_limit(double seconds) {
     return;
   }
   limit_seconds_ = seconds;
-  deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                 std::chrono::duration<double>(seconds));
+  deadline_ = Clock::now() +
+              std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
 Result<void> ExecutionContext::check(std::uint64_t elements) const {
@@ -60,10 +60,8 @@ void ExecutionContext::report(Phase phase,
 }
 
 Progress ExecutionContext::progress() const {
-  return {phase_.load(std::memory_order_relaxed),
-          fraction_.load(std::memory_order_relaxed),
-          elements_.load(std::memory_order_relaxed),
-          quality_.load(std::memory_order_relaxed)};
+  return {phase_.load(std::memory_order_relaxed), fraction_.load(std::memory_order_relaxed),
+          elements_.load(std::memory_order_relaxed), quality_.load(std::memory_order_relaxed)};
 }
 
 }  // namespace symcell

@@ -32,9 +32,9 @@ enum class Phase : std::uint8_t {
 // A snapshot that any thread may take.
 struct Progress {
   Phase phase = Phase::kParse;
-  double fraction = 0;             // 0 to 1 over the whole call, never decreasing
-  std::uint64_t elements = 0;      // elements of the cell so far
-  double quality_reached = 0;      // share of elements that keep all bounds, 0 to 1
+  double fraction = 0;         // 0 to 1 over the whole call, never decreasing
+  std::uint64_t elements = 0;  // elements of the cell so far
+  double quality_reached = 0;  // share of elements that keep all bounds, 0 to 1
 };
 
 class ExecutionContext {
@@ -45,7 +45,7 @@ class ExecutionContext {
   ExecutionContext(const ExecutionContext&) = delete;
   ExecutionContext& operator=(const ExecutionContext&) = delete;
 
-  void set_time_limit(double seconds);                    // counted from now; <= 0 or inf: none
+  void set_time_limit(double seconds);  // counted from now; <= 0 or inf: none
   void set_max_elements(std::uint64_t n) { max_elements_ = n; }
   [[nodiscard]] std::uint64_t max_elements() const { return max_elements_; }
 

@@ -85,8 +85,7 @@ class CellMeshBuilder {
         out_.elements.push_back(node(tri.v[i], exponent_in_cell(t, i)));
       }
       if (source_.locator == nullptr) {
-        out_.regions.push_back(
-            source_.subdomains[static_cast<std::size_t>(tri.face)].attribute);
+        out_.regions.push_back(source_.subdomains[static_cast<std::size_t>(tri.face)].attribute);
       } else {
         add_sector_regions(t);
       }
@@ -157,13 +156,11 @@ class CellMeshBuilder {
     if (!pslg_.uniform_markers) {
       const Point2 middle =
           0.5 * (mesh_.corner_point(tri, next3(j)) + mesh_.corner_point(tri, prev3(j)));
-      const std::int32_t copy =
-          copy_of_parent(static_cast<std::int32_t>(parent),
-                         mesh_.rotations().rotate(middle, cut_.exponent[t]));
+      const std::int32_t copy = copy_of_parent(static_cast<std::int32_t>(parent),
+                                               mesh_.rotations().rotate(middle, cut_.exponent[t]));
       marker = pslg_.segment_marker(parent, copy);
       for (std::int32_t s = 0; s < mesh_.fold(); ++s) {
-        out_.sector_boundary_markers.push_back(
-            pslg_.segment_marker(parent, mesh_.add(copy, s)));
+        out_.sector_boundary_markers.push_back(pslg_.segment_marker(parent, mesh_.add(copy, s)));
       }
     }
     out_.boundary_markers.push_back(marker);
@@ -230,8 +227,8 @@ class CellMeshBuilder {
   const CellCut& cut_;
   const SymmetricPslg& pslg_;
   SymmetryCellMesh out_;
-  std::vector<std::int32_t> orbit_;       // per vertex slot
-  std::vector<std::int32_t> first_node_;  // per vertex slot
+  std::vector<std::int32_t> orbit_;                         // per vertex slot
+  std::vector<std::int32_t> first_node_;                    // per vertex slot
   std::unordered_map<std::int64_t, std::int32_t> further_;  // looked up only, never iterated
 };
 

@@ -5,7 +5,6 @@
 #include <deque>
 #include <numbers>
 
-
 #include "core/tds/star.hpp"
 
 namespace symcell {
@@ -67,7 +66,8 @@ class CellCutter {
     }
   }
 
-  // Boundary loops that wind about the centre, domain on the left: counter-clockwise ones are outer.
+  // Boundary loops that wind about the centre, domain on the left: counter-clockwise ones are
+  // outer.
   void mark_ends() {
     std::vector<std::uint8_t> seen(3 * mesh_.triangle_slots(), 0);
     std::vector<VertexId> loop;
@@ -133,8 +133,8 @@ class CellCutter {
       StarItem item = star_item(mesh_, mesh_.corner_of(at));
       to_star_begin(mesh_, item);
       const StarItem begin = item;
-      // `leaves`: h starts at this vertex, so its triangle is on the left of the way out. An edge of
-      // the domain's boundary costs nothing: no symmetry edge lies there.
+      // `leaves`: h starts at this vertex, so its triangle is on the left of the way out. An edge
+      // of the domain's boundary costs nothing: no symmetry edge lies there.
       const auto relax = [&](HalfEdge h, const Corner& to, bool leaves) {
         Reach& there = distance_[idx(to.v)];
         if (there.done) return;
@@ -216,8 +216,8 @@ class CellCutter {
       sums[id] = sums[id] + mesh_.rotations().rotate(area * (a + b + c), cut_.exponent[t]);
       areas[id] += area;
     }
-    const auto largest = static_cast<std::size_t>(
-        std::max_element(areas.begin(), areas.end()) - areas.begin());
+    const auto largest =
+        static_cast<std::size_t>(std::max_element(areas.begin(), areas.end()) - areas.begin());
     std::vector<std::int32_t> turn(seeds_.size(), 0);
     const double sector = 2 * std::numbers::pi / static_cast<double>(mesh_.fold());
     for (std::size_t id = 0; id < seeds_.size(); ++id) {
@@ -232,8 +232,7 @@ class CellCutter {
     }
     for (TriangleId t = 0; t < mesh_.triangle_slots(); ++t) {
       if (!mesh_.alive(t)) continue;
-      cut_.exponent[t] =
-          mesh_.add(cut_.exponent[t], turn[static_cast<std::size_t>(component_[t])]);
+      cut_.exponent[t] = mesh_.add(cut_.exponent[t], turn[static_cast<std::size_t>(component_[t])]);
     }
   }
 
@@ -259,6 +258,8 @@ class CellCutter {
 
 }  // namespace
 
-Result<CellCut> cut_cell(const QuotientTriangulation& mesh) { return CellCutter(mesh).run(); }
+Result<CellCut> cut_cell(const QuotientTriangulation& mesh) {
+  return CellCutter(mesh).run();
+}
 
 }  // namespace symcell

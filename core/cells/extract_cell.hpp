@@ -1,8 +1,8 @@
 // The final symmetry cell: one representative per orbit of triangles, chosen so that the cell is
 // connected and its bounds have the fewest edges.
 //
-// The quotient of a part round the centre is a ring (or a cone with the centre as apex). Loops in it
-// have a holonomy, the exponent that a triangle carries when it is taken once round. At most two
+// The quotient of a part round the centre is a ring (or a cone with the centre as apex). Loops in
+// it have a holonomy, the exponent that a triangle carries when it is taken once round. At most two
 // ends of it have one that is not zero: the boundary loops round the centre, or the centre itself.
 // Cutting along any path of edges from one end to the other leaves a piece without holonomy, which
 // unrolls into one connected cell; a shortest path gives the fewest symmetry edges there are.
@@ -19,7 +19,8 @@ namespace symcell {
 struct CellCut {
   // Per triangle slot: the exponent at which the triangle stands in the cell.
   std::vector<std::int32_t> exponent;
-  // Half-edges of the cut with the cell counter-clockwise of them about the centre: the lower bound.
+  // Half-edges of the cut with the cell counter-clockwise of them about the centre: the lower
+  // bound.
   std::vector<HalfEdge> lower;
 };
 

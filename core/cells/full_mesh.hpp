@@ -56,11 +56,11 @@ class FullMeshView {
 
   const SymmetryCellMesh* cell_;
   RotationTable rotations_;
-  std::int64_t off_axis_ = 0;              // m
+  std::int64_t off_axis_ = 0;  // m
   std::int64_t node_count_ = 0;
-  std::vector<std::int64_t> rank_;         // per orbit; axis orbits rank after the others
+  std::vector<std::int64_t> rank_;  // per orbit; axis orbits rank after the others
   std::vector<std::int32_t> orbit_of_rank_;
-  std::vector<std::int32_t> marker_;       // per orbit
+  std::vector<std::int32_t> marker_;  // per orbit
 };
 
 }  // namespace symcell

@@ -52,12 +52,13 @@ struct SymmetryCellMesh {
   std::vector<std::uint8_t> boundary_is_higher_image;
 
   // The bounds: facet i of `lower` is mapped by +360/n onto facet i of `higher`, node by node.
-  std::vector<std::int32_t> lower_facets;   // nodes_per_facet each
+  std::vector<std::int32_t> lower_facets;  // nodes_per_facet each
   std::vector<std::int32_t> higher_facets;
   std::vector<std::int32_t> lower_to_higher;  // per cell node
 
   // Only if regions or markers differ between sectors (ignore_markers): element e in sector s has
-  // region sector_regions[e * fold + s], boundary facet b marker sector_boundary_markers[b * fold + s].
+  // region sector_regions[e * fold + s], boundary facet b marker sector_boundary_markers[b * fold +
+  // s].
   std::vector<std::int32_t> sector_regions;
   std::vector<std::int32_t> sector_boundary_markers;
 
@@ -66,10 +67,9 @@ struct SymmetryCellMesh {
   }
   [[nodiscard]] std::size_t facet_count() const { return boundary_markers.size(); }
   [[nodiscard]] std::int32_t region(std::size_t element, std::int32_t sector) const {
-    return sector_regions.empty()
-               ? regions[element]
-               : sector_regions[element * static_cast<std::size_t>(fold) +
-                                static_cast<std::size_t>(sector)];
+    return sector_regions.empty() ? regions[element]
+                                  : sector_regions[element * static_cast<std::size_t>(fold) +
+                                                   static_cast<std::size_t>(sector)];
   }
   [[nodiscard]] std::int32_t boundary_marker(std::size_t facet, std::int32_t sector) const {
     return sector_boundary_markers.empty()

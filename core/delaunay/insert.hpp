@@ -5,8 +5,8 @@
 // from x's triangle without crossing a subsegment. Because it is computed on the cover it meets the
 // subsegments of every copy, so the encroachment test of [paper sec. 4], "by the Steiner point or
 // any symmetric point", falls out of its boundary before anything is changed. Where the cavity of x
-// overlaps a copy of itself (near the centre, or in coarse meshes of large fold) the insertion falls
-// back to splitting and Lawson flips, which are ordinary in the quotient.
+// overlaps a copy of itself (near the centre, or in coarse meshes of large fold) the insertion
+// falls back to splitting and Lawson flips, which are ordinary in the quotient.
 #pragma once
 
 #include <vector>
@@ -23,9 +23,9 @@ struct CavityEdge {
   HalfEdge mate = kNoHalfEdge;  // half-edge outside, kNoHalfEdge at the domain's boundary
   std::int32_t off = 0;         // exponent of the triangle outside
   SubsegmentId seg = kNoSubsegment;
-  std::int32_t face = 0;        // of the triangle inside
-  HalfEdge was = kNoHalfEdge;   // the half-edge inside, before the cavity is emptied
-  std::int32_t frame = 0;       // exponent of the triangle inside
+  std::int32_t face = 0;       // of the triangle inside
+  HalfEdge was = kNoHalfEdge;  // the half-edge inside, before the cavity is emptied
+  std::int32_t frame = 0;      // exponent of the triangle inside
 };
 
 struct CavityTriangle {
@@ -35,10 +35,10 @@ struct CavityTriangle {
 
 struct Cavity {
   std::vector<CavityTriangle> triangles;
-  std::vector<CavityEdge> edges;   // counter-clockwise
+  std::vector<CavityEdge> edges;    // counter-clockwise
   std::size_t right_triangles = 0;  // for a point on an edge: index of the first beyond it
   std::size_t right_edges = 0;
-  bool simple = false;             // a disc without interior vertex that meets no copy of itself
+  bool simple = false;  // a disc without interior vertex that meets no copy of itself
 };
 
 struct EditCounters {
@@ -68,13 +68,21 @@ class DelaunayEditor {
 
   // Insert x after a dry run. Returns the vertex, -1 if x cannot be placed (coincides with a vertex
   // or degenerates a triangle within rounding; nothing is changed then). `kind` as for add_vertex.
-  // On success `created()` lists the triangles that are new or changed, without repeats that matter.
+  // On success `created()` lists the triangles that are new or changed, without repeats that
+  // matter.
   VertexId insert_in_cavity(TriangleId t, Point2 x, const Cavity& cavity, VertexKind kind);
   // Splits the edge h, and its subsegment if it is one, at x.
   VertexId insert_on_edge(HalfEdge h, Point2 x, const Cavity& cavity, VertexKind kind);
 
   // Lawson flips from the queued edges until all are locally Delaunay.
   void queue_edge(HalfEdge h) { edges_.push_back(h); }
+  // The edges of the star last filled: its sides and spokes.
+  void queue_star() {
+    for (const TriangleId t : star_) {
+      edges_.push_back(3 * t);
+      edges_.push_back(3 * t + 1);
+    }
+  }
   void legalise();
 
   [[nodiscard]] std::vector<TriangleId>& created() { return created_; }

@@ -26,7 +26,9 @@ inline constexpr double kLiftInCircleLength = 64.0 * kUnitRoundoff;
 inline constexpr double kLiftOrientationRadius = 24.0 * kUnitRoundoff;
 inline constexpr double kLiftOrientationLength = 8.0 * kUnitRoundoff;
 
-[[nodiscard]] inline double radius_bound(Point2 p) { return std::abs(p.x) + std::abs(p.y); }
+[[nodiscard]] inline double radius_bound(Point2 p) {
+  return std::abs(p.x) + std::abs(p.y);
+}
 }  // namespace internal
 
 // `radius`: bound on the distance of the points from the centre.  Sign for points known up to
@@ -39,17 +41,16 @@ inline constexpr double kLiftOrientationLength = 8.0 * kUnitRoundoff;
   return internal::decide(cross(ac, bc), bound);
 }
 
-[[nodiscard]] inline Sign certain_in_circle(
-    Point2 a, Point2 b, Point2 c, Point2 d, double radius) {
+[[nodiscard]] inline Sign certain_in_circle(Point2 a, Point2 b, Point2 c, Point2 d, double radius) {
   const Point2 ad = a - d, bd = b - d, cd = c - d;
-  const double extent = std::max({internal::radius_bound(ad), internal::radius_bound(bd),
-                                  internal::radius_bound(cd)});
+  const double extent = std::max(
+      {internal::radius_bound(ad), internal::radius_bound(bd), internal::radius_bound(cd)});
   const double determinant = squared_length(ad) * cross(bd, cd) +
                              squared_length(bd) * cross(cd, ad) +
                              squared_length(cd) * cross(ad, bd);
-  const double bound = extent * extent * extent *
-                       (internal::kLiftInCircleRadius * radius +
-                        internal::kLiftInCircleLength * extent);
+  const double bound =
+      extent * extent * extent *
+      (internal::kLiftInCircleRadius * radius + internal::kLiftInCircleLength * extent);
   return internal::decide(determinant, bound);
 }
 
@@ -87,11 +88,8 @@ template <class... Corners>
       std::max({internal::radius_bound(p), internal::radius_bound(q), internal::radius_bound(r)}));
 }
 
-[[nodiscard]] inline Sign in_circle(const QuotientTriangulation& mesh,
-                                    Corner a,
-                                    Corner b,
-                                    Corner c,
-                                    Corner d) {
+[[nodiscard]] inline Sign in_circle(
+    const QuotientTriangulation& mesh, Corner a, Corner b, Corner c, Corner d) {
   if (internal::one_sheet(mesh, a, b, c, d)) {
     return in_circle(mesh.point(a.v), mesh.point(b.v), mesh.point(c.v), mesh.point(d.v));
   }

@@ -18,14 +18,32 @@ struct Point3 {
   friend bool operator==(const Point3&, const Point3&) = default;
 };
 
-[[nodiscard]] inline Point2 operator+(Point2 a, Point2 b) { return {a.x + b.x, a.y + b.y}; }
-[[nodiscard]] inline Point2 operator-(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
-[[nodiscard]] inline Point2 operator*(double s, Point2 a) { return {s * a.x, s * a.y}; }
-[[nodiscard]] inline double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
-[[nodiscard]] inline double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
-[[nodiscard]] inline double squared_length(Point2 a) { return dot(a, a); }
-[[nodiscard]] inline double length(Point2 a) { return std::sqrt(dot(a, a)); }
-[[nodiscard]] inline double squared_distance(Point2 a, Point2 b) { return squared_length(a - b); }
-[[nodiscard]] inline double distance(Point2 a, Point2 b) { return length(a - b); }
+[[nodiscard]] inline Point2 operator+(Point2 a, Point2 b) {
+  return {a.x + b.x, a.y + b.y};
+}
+[[nodiscard]] inline Point2 operator-(Point2 a, Point2 b) {
+  return {a.x - b.x, a.y - b.y};
+}
+[[nodiscard]] inline Point2 operator*(double s, Point2 a) {
+  return {s * a.x, s * a.y};
+}
+[[nodiscard]] inline double dot(Point2 a, Point2 b) {
+  return a.x * b.x + a.y * b.y;
+}
+[[nodiscard]] inline double cross(Point2 a, Point2 b) {
+  return a.x * b.y - a.y * b.x;
+}
+[[nodiscard]] inline double squared_length(Point2 a) {
+  return dot(a, a);
+}
+[[nodiscard]] inline double length(Point2 a) {
+  return std::sqrt(dot(a, a));
+}
+[[nodiscard]] inline double squared_distance(Point2 a, Point2 b) {
+  return squared_length(a - b);
+}
+[[nodiscard]] inline double distance(Point2 a, Point2 b) {
+  return length(a - b);
+}
 
 }  // namespace symcell

@@ -30,8 +30,7 @@ CosSin unit_root(std::int64_t k, std::int64_t n) {
     const CosSin m = unit_root(n - 4 * k, 4 * n);
     return {m.sine, m.cosine};
   }
-  const double angle =
-      2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n);
+  const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n);
   return {std::cos(angle), std::sin(angle)};
 }
 

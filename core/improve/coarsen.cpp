@@ -15,7 +15,8 @@ constexpr std::size_t kVertexVisits = 60'000;
 // Moves tried to mend one removal before it is taken back.
 constexpr int kMendingMoves = 6;
 constexpr std::size_t kMostBadToMend = 8;
-// A star this much too large for the area bound may still lose its vertex: mending moves neighbours.
+// A star this much too large for the area bound may still lose its vertex: mending moves
+// neighbours.
 constexpr double kRoomSlack = 1.2;
 
 }  // namespace
@@ -28,7 +29,8 @@ Coarsener::Coarsener(DelaunayEditor& editor,
       mesh_(editor.mesh()),
       criteria_(criteria),
       surgery_(surgery),
-      context_(context) {}
+      context_(context) {
+}
 
 bool Coarsener::is_steiner(VertexId v) const {
   const VertexKind kind = mesh_.kind(v);
@@ -111,9 +113,8 @@ bool Coarsener::merge_with_neighbour(VertexId v) {
     if (!v_free && !w_free && v > w.v) continue;  // looked at from the other end
     if (v_free && w_free && v > w.v) continue;
     // The one on a segment, if any, goes first; its frame is the one used.
-    const bool ok = v_free && !w_free
-                        ? surgery_.merge({w.v, 0}, {v, mesh_.subtract(0, w.k)})
-                        : surgery_.merge({v, 0}, w);
+    const bool ok = v_free && !w_free ? surgery_.merge({w.v, 0}, {v, mesh_.subtract(0, w.k)})
+                                      : surgery_.merge({v, 0}, w);
     if (ok) return true;
   }
   return false;
@@ -146,8 +147,8 @@ bool Coarsener::has_room_without(VertexId v) {
 bool Coarsener::remove_and_mend(VertexId v) {
   if (mesh_.kind(v) == VertexKind::kFree && !has_room_without(v)) return false;
   mesh_.begin();
-  const bool removed = mesh_.kind(v) == VertexKind::kFree ? surgery_.remove(v)
-                                                           : surgery_.unsplit(v);
+  const bool removed =
+      mesh_.kind(v) == VertexKind::kFree ? surgery_.remove(v) : surgery_.unsplit(v);
   if (removed && mend()) {
     mesh_.commit();
     return true;

@@ -2,10 +2,10 @@
 // kept good, and neighbours are moved to make room.
 //
 // Greedy rounds over all Steiner points; each step keeps the mesh constrained Delaunay and all
-// bounds, so the result is valid whenever the rounds stop. Steps, cheapest first: merge two adjacent
-// points into one; remove a point and mend what became bad by moving points near it, or take the
-// removal back from the journal; then move points to the middle of their feasible regions, which
-// opens the next round's chances.
+// bounds, so the result is valid whenever the rounds stop. Steps, cheapest first: merge two
+// adjacent points into one; remove a point and mend what became bad by moving points near it, or
+// take the removal back from the journal; then move points to the middle of their feasible regions,
+// which opens the next round's chances.
 #pragma once
 
 #include <cstdint>

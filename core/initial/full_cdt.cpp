@@ -95,8 +95,7 @@ Result<void> insert_segments(const SymmetricPslg& pslg,
                              FullCdt& full) {
   const RotationTable rotations(pslg.fold);
   const auto turned = [&](OrbitVertex v, std::int32_t k) {
-    return v.orbit == pslg.centre_orbit ? v
-                                        : OrbitVertex{v.orbit, rotations.add(v.exponent, k)};
+    return v.orbit == pslg.centre_orbit ? v : OrbitVertex{v.orbit, rotations.add(v.exponent, k)};
   };
   std::size_t done = 0;
   for (std::size_t s = 0; s < pslg.segments.size(); ++s) {

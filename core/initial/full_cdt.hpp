@@ -28,7 +28,9 @@ using ConstrainedFaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel>;
 using FaceBase = CGAL::Triangulation_face_base_with_info_2<FaceInfo, Kernel, ConstrainedFaceBase>;
 using Tds = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
 using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
-    Kernel, Tds, CGAL::No_constraint_intersection_requiring_constructions_tag>;
+    Kernel,
+    Tds,
+    CGAL::No_constraint_intersection_requiring_constructions_tag>;
 
 struct Subdomain {
   bool inside = true;  // of the domain: bounded and without hole seed

@@ -47,8 +47,7 @@ class QuotientBuilder {
     emit_triangles(result.mesh);
     if (auto ok = link_triangles(result.mesh); !ok) return tl::unexpected<Error>(ok.error());
     result.subdomains = subdomain_orbits_;
-    if (full_.centre_orbit >= 0 &&
-        result.mesh.corner_of(full_.centre_orbit) == kNoHalfEdge) {
+    if (full_.centre_orbit >= 0 && result.mesh.corner_of(full_.centre_orbit) == kNoHalfEdge) {
       result.mesh.set_centre(-1);
     }
     return result;
@@ -87,7 +86,8 @@ class QuotientBuilder {
     };
     if (pslg_.fold > 1) {
       for (auto e = full_.cdt.finite_edges_begin(); e != full_.cdt.finite_edges_end(); ++e) {
-        if (is_plain(e->first, e->second)) keys.push_back(undirected(edge(e->first, e->second).key));
+        if (is_plain(e->first, e->second))
+          keys.push_back(undirected(edge(e->first, e->second).key));
       }
       std::sort(keys.begin(), keys.end());
     }
@@ -276,8 +276,8 @@ class QuotientBuilder {
         return fail(ErrorCode::kInternal, "an edge orbit inside the domain has one side only");
       }
       if (constrained && tri.seg[local_of(side.half_edge)] == kNoSubsegment) {
-        const auto parent = std::lower_bound(
-            parents.begin(), parents.end(), std::pair(undirected(side.edge.key), std::int32_t{0}));
+        const auto parent = std::lower_bound(parents.begin(), parents.end(),
+                                             std::pair(undirected(side.edge.key), std::int32_t{0}));
         if (parent == parents.end() || parent->first != undirected(side.edge.key)) {
           return fail(ErrorCode::kInternal, "a constrained edge belongs to no segment orbit");
         }
@@ -306,10 +306,10 @@ class QuotientBuilder {
   FullCdt& full_;
   RotationTable rotations_;
   std::int32_t merged_count_ = 0;
-  std::vector<char> representative_;          // per merged face
+  std::vector<char> representative_;  // per merged face
   std::vector<std::int32_t> orbit_of_subdomain_;
   std::vector<SubdomainOrbit> subdomain_orbits_;
-  std::vector<FaceHandle> handles_;           // per triangle of the quotient
+  std::vector<FaceHandle> handles_;  // per triangle of the quotient
   std::vector<std::pair<FaceHandle, TriangleId>> slot_of_;
 };
 

@@ -2,8 +2,8 @@
 //
 // The CDT of the whole symmetric PSLG is computed with exact predicates (CGAL). Cocircular points
 // break symmetry: an edge whose n copies are not all present is dropped, which merges the triangles
-// at it; the triangles of one merged face per orbit are kept and glued by their edges' orbits. Lawson
-// flips in the quotient then settle what the ties left. Source: [paper] sec. 3.
+// at it; the triangles of one merged face per orbit are kept and glued by their edges' orbits.
+// Lawson flips in the quotient then settle what the ties left. Source: [paper] sec. 3.
 #pragma once
 
 #include <cstdint>

@@ -21,11 +21,12 @@ namespace symcell {
 inline constexpr double kAngleMarginDeg = 1e-7;
 // Segments meeting below this angle are split on concentric shells [Ruppert95 sec. 7].
 inline constexpr double kShellAngleDeg = 60.0;
-// For bounds below this, lenses are those of this bound: a flatter lens would let points lie next to
-// segments, and edges shrink, although no angle asks for it.
+// For bounds below this, lenses are those of this bound: a flatter lens would let points lie next
+// to segments, and edges shrink, although no angle asks for it.
 inline constexpr double kLeastLensDeg = 20.0;
 // So are corners below this many angle bounds: they take two triangles, whose angles leave their
-// sides hardly any freedom to differ in length (measured: without, an 87 degree corner cascades at 40).
+// sides hardly any freedom to differ in length (measured: without, an 87 degree corner cascades at
+// 40).
 inline constexpr double kShellFactor = 2.5;
 
 enum class Verdict : std::uint8_t { kGood, kAngle, kSize };
@@ -39,7 +40,7 @@ enum class Exemption : std::uint8_t {
 
 struct Assessment {
   Verdict verdict = Verdict::kGood;
-  double shortest2 = 0;     // squared length of the shortest edge
+  double shortest2 = 0;        // squared length of the shortest edge
   std::uint32_t shortest = 0;  // that edge
 };
 
@@ -123,15 +124,15 @@ class Criteria {
   double goal_angle_ = 0;
   double cos2_goal_ = 1;
   double shell_angle_ = 0;
-  double cos_lens_ = 1;   // cos of twice the bound
+  double cos_lens_ = 1;  // cos of twice the bound
   double max_edge2_ = 0;
   bool has_size_bound_ = false;
   bool centre_is_narrow_ = false;
   bool centre_is_exact_ = false;
-  std::vector<double> max_area_;              // per subdomain orbit
-  std::vector<std::uint8_t> acute_;           // per input vertex: bit 0 acute, bit 1 narrow
-  std::vector<NarrowCorner> narrow_;          // sorted by vertex
-  std::vector<SegmentEnds> ends_;             // per vertex on a segment
+  std::vector<double> max_area_;      // per subdomain orbit
+  std::vector<std::uint8_t> acute_;   // per input vertex: bit 0 acute, bit 1 narrow
+  std::vector<NarrowCorner> narrow_;  // sorted by vertex
+  std::vector<SegmentEnds> ends_;     // per vertex on a segment
 };
 
 }  // namespace symcell

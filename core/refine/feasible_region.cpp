@@ -35,7 +35,8 @@ FeasibleRegion::FeasibleRegion(double alpha, double max_edge2)
       half_cosecant_(0.5 / sine_),
       max_edge_(std::sqrt(max_edge2)),
       max_edge2_(max_edge2),
-      most_edges_(static_cast<std::size_t>(2 * std::numbers::pi / alpha_)) {}
+      most_edges_(static_cast<std::size_t>(2 * std::numbers::pi / alpha_)) {
+}
 
 FeasibleRegion::Disc FeasibleRegion::disc_of(const StarEdge& e) const {
   const Point2 d = e.b - e.a;
@@ -97,11 +98,8 @@ bool FeasibleRegion::start(const std::vector<StarEdge>& edges, Point2 origin) {
   // In units of the edge: the wedge's apex, its sides where the disc ends, the top of the disc.
   const double tangent = sine_ / cosine_, r = half_cosecant_;
   const double low = (r + 0.5) * tangent, high = half_cotangent_ + r;
-  polygon_.assign({middle + 0.5 * tangent * n,
-                   middle + r * d + low * n,
-                   middle + r * d + high * n,
-                   middle - r * d + high * n,
-                   middle - r * d + low * n});
+  polygon_.assign({middle + 0.5 * tangent * n, middle + r * d + low * n, middle + r * d + high * n,
+                   middle - r * d + high * n, middle - r * d + low * n});
   if (e.max_area < kInfinity && !clip(n, dot(n, middle) + 2 * e.max_area)) return false;
   if (max_edge2_ < kInfinity) {
     for (const StarEdge& s : edges) discs_.push_back({s.a - origin, max_edge_});

@@ -1,11 +1,11 @@
 // Where a vertex may lie so that every triangle of its star keeps all bounds.
 //
-// For a star polygon with edges a -> b the triangles (a, b, x) have all angles >= alpha exactly if x
-// lies in two half-planes (rays from a and b at angle alpha) and in one disc (the chord ab seen under
-// alpha); the area bound is one more half-plane, the edge bound two more discs. All are convex, so
-// the feasible region is, and a centroid cutting-plane search finds a point of it, near its middle,
-// unless it is empty or very thin. Source: the petals and wedges of [Erten-Ungor09], here solved as
-// one convex problem.
+// For a star polygon with edges a -> b the triangles (a, b, x) have all angles >= alpha exactly if
+// x lies in two half-planes (rays from a and b at angle alpha) and in one disc (the chord ab seen
+// under alpha); the area bound is one more half-plane, the edge bound two more discs. All are
+// convex, so the feasible region is, and a centroid cutting-plane search finds a point of it, near
+// its middle, unless it is empty or very thin. Source: the petals and wedges of [Erten-Ungor09],
+// here solved as one convex problem.
 #pragma once
 
 #include <cstdint>

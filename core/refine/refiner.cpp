@@ -10,9 +10,9 @@
 namespace symcell {
 namespace {
 
-// An angle bound is out of reach where edges this much shorter than the shortest edge of the initial
-// triangulation appear: honest grading stays orders of magnitude above it, a cascade falls below
-// within a few hundred steps.
+// An angle bound is out of reach where edges this much shorter than the shortest edge of the
+// initial triangulation appear: honest grading stays orders of magnitude above it, a cascade falls
+// below within a few hundred steps.
 constexpr double kCascadeRatio = 1e-5;
 // Edges below this share of the model's extent drown in rounding.
 constexpr double kResolution = 1e-12;
@@ -249,14 +249,13 @@ void Refiner::settle_star() {
 Refiner::Outcome Refiner::treat(TriangleId t) {
   const Assessment a = criteria_.assess(mesh_, mesh_.triangle(t));
   if (a.verdict == Verdict::kGood) return Outcome::kDone;
-  if (a.verdict == Verdict::kAngle &&
-      criteria_.exemption(mesh_, t, a) != Exemption::kNone) {
+  if (a.verdict == Verdict::kAngle && criteria_.exemption(mesh_, t, a) != Exemption::kNone) {
     // Its angle is excused, its size is not.
     const Triangle& tri = mesh_.triangle(t);
     const Point2 p[3] = {mesh_.corner_point(tri, 0), mesh_.corner_point(tri, 1),
                          mesh_.corner_point(tri, 2)};
-    const double longest2 = std::max({squared_distance(p[0], p[1]), squared_distance(p[1], p[2]),
-                                      squared_distance(p[2], p[0])});
+    const double longest2 = std::max(
+        {squared_distance(p[0], p[1]), squared_distance(p[1], p[2]), squared_distance(p[2], p[0])});
     if (cross(p[1] - p[0], p[2] - p[0]) <= 2 * criteria_.max_area(tri.face) &&
         longest2 <= criteria_.max_edge2()) {
       return Outcome::kExempt;
@@ -342,7 +341,10 @@ std::optional<Point2> Refiner::good_star_near(TriangleId home, Point2 x) {
 }
 
 // Inserts x, whose cavity is in cavity_.
-Refiner::Outcome Refiner::insert_at(TriangleId home, Point2 x, bool optimal, std::int32_t exponent) {
+Refiner::Outcome Refiner::insert_at(TriangleId home,
+                                    Point2 x,
+                                    bool optimal,
+                                    std::int32_t exponent) {
   for (const CavityEdge& e : cavity_.edges) {
     if (squared_distance(mesh_.lift(e.a.v, e.a.k), x) < shortest_allowed2_) return Outcome::kStuck;
   }

@@ -1,10 +1,10 @@
 // Symmetry-constrained Delaunay refinement of the quotient mesh.
 //
 // [Ruppert95] with Shewchuk's diametral lenses, off-centres [Ungor04], concentric shells at small
-// input angles, and, before a point is inserted, relocation: a free vertex is moved if its whole star
-// can be made good, and an inserted point is put where its whole star is good if there is such a
-// place [Erten-Ungor09]. All of it on orbits: one step here is n simultaneous steps in the full mesh
-// [paper sec. 4].
+// input angles, and, before a point is inserted, relocation: a free vertex is moved if its whole
+// star can be made good, and an inserted point is put where its whole star is good if there is such
+// a place [Erten-Ungor09]. All of it on orbits: one step here is n simultaneous steps in the full
+// mesh [paper sec. 4].
 #pragma once
 
 #include <cstdint>
@@ -32,8 +32,8 @@ struct RefineCounters {
 class Refiner {
  public:
   struct Settings {
-    Point2 center;          // of the model, for messages
-    bool relocate = true;   // moves and star-optimal insertion
+    Point2 center;         // of the model, for messages
+    bool relocate = true;  // moves and star-optimal insertion
     // Points tried round a bad triangle for one with a good star before its off-centre is taken.
     int samples = 0;
     std::uint64_t seed = 0;  // of the samples

@@ -24,8 +24,8 @@ class StarSurgery {
   // editor.created() then lists what changed, the star included.
   [[nodiscard]] bool relocate(VertexId v);
 
-  // Replaces two adjacent Steiner points (corners in one frame, kept.k = 0) by one with a good star:
-  // `kept` is moved, `removed` is gone. If one lies on a segment, `kept` does.
+  // Replaces two adjacent Steiner points (corners in one frame, kept.k = 0) by one with a good
+  // star: `kept` is moved, `removed` is gone. If one lies on a segment, `kept` does.
   [[nodiscard]] bool merge(Corner kept, Corner removed);
 
   // Removes a free vertex whatever the quality of what remains, keeping the mesh Delaunay.
@@ -45,7 +45,7 @@ class StarSurgery {
 
  private:
   struct SegmentEnds {
-    Corner a, b;            // ends of the chain of subsegments, in the frame
+    Corner a, b;  // ends of the chain of subsegments, in the frame
     std::vector<SubsegmentId> chain;
   };
 
@@ -53,13 +53,15 @@ class StarSurgery {
   [[nodiscard]] bool gather_cavity(Corner v, Corner w);
   [[nodiscard]] bool append_star(Corner v, const Corner* other, bool first);
   [[nodiscard]] bool cavity_meets_itself() const;
+  // Whether a copy of a removed vertex is an end of a side.
+  [[nodiscard]] static bool touches(const std::vector<CavityEdge>& edges,
+                                    std::initializer_list<Corner> removed);
   [[nodiscard]] bool gather_star(Corner v, std::vector<CavityTriangle>& region) const;
   [[nodiscard]] bool gather_union(std::initializer_list<Corner> removed);
   [[nodiscard]] bool segment_ends(std::initializer_list<Corner> removed, SegmentEnds& ends) const;
   [[nodiscard]] bool merge_free(Corner kept, Corner removed);
   [[nodiscard]] bool merge_on_segment(std::initializer_list<Corner> removed);
-  [[nodiscard]] bool collect_sides(std::initializer_list<Corner> removed,
-                                   const SegmentEnds& ends);
+  [[nodiscard]] bool collect_sides(std::initializer_list<Corner> removed, const SegmentEnds& ends);
   [[nodiscard]] bool keep_if_sizes_hold(bool transaction);
   [[nodiscard]] std::optional<std::size_t> fan_apex(const std::vector<CavityEdge>& polygon) const;
   void fill_fan(const std::vector<CavityEdge>& polygon,

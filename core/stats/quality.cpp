@@ -15,8 +15,7 @@ constexpr double kBinEdges[kAspectBins - 1] = {1.5, 2, 2.5, 3, 4, 6, 10, 15};
 
 std::size_t aspect_bin(double aspect) {
   return static_cast<std::size_t>(
-      std::upper_bound(std::begin(kBinEdges), std::end(kBinEdges), aspect) -
-      std::begin(kBinEdges));
+      std::upper_bound(std::begin(kBinEdges), std::end(kBinEdges), aspect) - std::begin(kBinEdges));
 }
 
 }  // namespace
@@ -37,8 +36,8 @@ void measure_cell_2(const SymmetryCellMesh& cell, Statistics& statistics) {
   for (std::size_t e = 0; e < cell.element_count(); ++e) {
     Point2 p[3];
     for (std::size_t i = 0; i < 3; ++i) {
-      const Point3 q = full.cell_node_position(
-          static_cast<std::size_t>(cell.elements[e * stride + i]));
+      const Point3 q =
+          full.cell_node_position(static_cast<std::size_t>(cell.elements[e * stride + i]));
       p[i] = {q.x, q.y};
     }
     const double doubled = cross(p[1] - p[0], p[2] - p[0]);

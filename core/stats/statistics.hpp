@@ -14,7 +14,7 @@ namespace symcell {
 inline constexpr std::size_t kAspectBins = 9;
 
 struct ExemptCount {
-  std::string reason;        // "small_input_angle", "fold_angle_at_centre", ...
+  std::string reason;          // "small_input_angle", "fold_angle_at_centre", ...
   std::uint64_t elements = 0;  // of the cell
 };
 
@@ -27,9 +27,9 @@ struct Statistics {
     double measure = 0;                 // area (2D) or volume (3D)
     double min_angle_deg = 0;
     double max_angle_deg = 0;
-    double max_radius_edge = 0;         // circumradius / shortest edge
-    double min_dihedral_deg = 0;        // 3D only
-    double max_dihedral_deg = 0;        // 3D only
+    double max_radius_edge = 0;   // circumradius / shortest edge
+    double min_dihedral_deg = 0;  // 3D only
+    double max_dihedral_deg = 0;  // 3D only
     std::array<std::uint64_t, kAspectBins> aspect_ratio_histogram{};
   } cell;
 
@@ -50,21 +50,21 @@ struct Statistics {
     std::uint64_t steiner_points = 0;  // orbits of vertices in the cell that the input lacks
     std::uint64_t splits = 0;          // subsegments split
     std::uint64_t flips = 0;
-    std::uint64_t crossings = 0;       // operations across relative exponent != 0
+    std::uint64_t crossings = 0;  // operations across relative exponent != 0
     std::uint64_t relocations = 0;
-    std::uint64_t removed = 0;         // vertices removed by coarsening
+    std::uint64_t removed = 0;  // vertices removed by coarsening
   } refinement;
 
   std::vector<ExemptCount> exempt;
 
   struct TimingsMs {
-    double parse = 0;      // filled in by the caller that parsed
+    double parse = 0;  // filled in by the caller that parsed
     double symmetry = 0;
     double initial = 0;
     double refine = 0;
     double cell = 0;
-    double restore = 0;    // filled in by the caller that wrote the full mesh
-    double write = 0;      // likewise
+    double restore = 0;  // filled in by the caller that wrote the full mesh
+    double write = 0;    // likewise
     double total = 0;
   } timings_ms;
 

@@ -38,22 +38,30 @@ using SubsegmentId = std::int32_t;
 inline constexpr HalfEdge kNoHalfEdge = std::numeric_limits<HalfEdge>::max();
 inline constexpr SubsegmentId kNoSubsegment = -1;
 
-[[nodiscard]] constexpr std::uint32_t next3(std::uint32_t i) { return i == 2 ? 0 : i + 1; }
-[[nodiscard]] constexpr std::uint32_t prev3(std::uint32_t i) { return i == 0 ? 2 : i - 1; }
-[[nodiscard]] constexpr TriangleId triangle_of(HalfEdge h) { return h / 3; }
-[[nodiscard]] constexpr std::uint32_t local_of(HalfEdge h) { return h % 3; }
+[[nodiscard]] constexpr std::uint32_t next3(std::uint32_t i) {
+  return i == 2 ? 0 : i + 1;
+}
+[[nodiscard]] constexpr std::uint32_t prev3(std::uint32_t i) {
+  return i == 0 ? 2 : i - 1;
+}
+[[nodiscard]] constexpr TriangleId triangle_of(HalfEdge h) {
+  return h / 3;
+}
+[[nodiscard]] constexpr std::uint32_t local_of(HalfEdge h) {
+  return h % 3;
+}
 
 // One cache line.
 struct alignas(64) Triangle {
   VertexId v[3];
   HalfEdge nb[3];
-  SubsegmentId seg[3];    // subsegment on edge j, kNoSubsegment: none
-  std::int16_t k[3];      // exponents of the corners, [0, n)
-  std::int16_t off[3];    // exponents of the neighbours, [0, n)
-  std::int32_t face;      // orbit of subdomains that holds the triangle; < 0: free slot
-  std::uint32_t stamp;    // scratch: last epoch that visited this slot
-  std::int32_t scratch;   // meaningful only together with stamp
-  std::uint32_t queued;   // bits of the refinement queue
+  SubsegmentId seg[3];   // subsegment on edge j, kNoSubsegment: none
+  std::int16_t k[3];     // exponents of the corners, [0, n)
+  std::int16_t off[3];   // exponents of the neighbours, [0, n)
+  std::int32_t face;     // orbit of subdomains that holds the triangle; < 0: free slot
+  std::uint32_t stamp;   // scratch: last epoch that visited this slot
+  std::int32_t scratch;  // meaningful only together with stamp
+  std::uint32_t queued;  // bits of the refinement queue
 };
 static_assert(sizeof(Triangle) == 64);
 
