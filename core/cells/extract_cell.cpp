@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <numbers>
+#include <utility>
 
 #include "core/tds/star.hpp"
 
@@ -12,15 +13,11 @@ namespace {
 
 constexpr std::int32_t kUnset = -1;
 
-// Which end of the ring a vertex belongs to.
-enum End : std::uint8_t { kNone = 0, kInner = 1, kOuter = 2 };
-
 class CellCutter {
  public:
   explicit CellCutter(const QuotientTriangulation& mesh)
       : mesh_(mesh),
         component_(mesh.triangle_slots(), kUnset),
-        end_(mesh.vertex_slots(), kNone),
         is_cut_(3 * mesh.triangle_slots(), 0) {
     cut_.exponent.assign(mesh.triangle_slots(), kUnset);
   }
@@ -28,8 +25,8 @@ class CellCutter {
   Result<CellCut> run() {
     find_components();
     if (mesh_.fold() > 1) {
-      mark_ends();
-      for (const TriangleId seed : seeds_) cut_component(seed);
+      find_boundary();
+      for (std::size_t c = 0; c < seeds_.size(); ++c) cut_component(static_cast<std::int32_t>(c));
     }
     for (const TriangleId seed : seeds_) {
       if (auto ok = unroll(seed); !ok) return tl::unexpected<Error>(ok.error());
@@ -66,16 +63,21 @@ class CellCutter {
     }
   }
 
-  // Boundary loops that wind about the centre, domain on the left: counter-clockwise ones are
-  // outer.
-  void mark_ends() {
+  // Ends of the components' rings, and the wedges at boundary vertices. Boundary loops that wind
+  // about the centre have the domain on their left: counter-clockwise ones are outer ends.
+  void find_boundary() {
+    inner_.resize(seeds_.size());
+    outer_.resize(seeds_.size());
     std::vector<std::uint8_t> seen(3 * mesh_.triangle_slots(), 0);
     std::vector<VertexId> loop;
     for (HalfEdge h = 0; h < seen.size(); ++h) {
-      if (!mesh_.alive(triangle_of(h)) || seen[h] != 0 ||
+      if (!mesh_.alive(triangle_of(h)) ||
           mesh_.triangle(triangle_of(h)).nb[local_of(h)] != kNoHalfEdge) {
         continue;
       }
+      wedges_.emplace_back(mesh_.triangle(triangle_of(h)).v[next3(local_of(h))],
+                           3 * triangle_of(h) + next3(local_of(h)));
+      if (seen[h] != 0) continue;
       double winding = 0;
       loop.clear();
       for (HalfEdge at = h; seen[at] == 0; at = next_on_boundary(at)) {
@@ -89,9 +91,17 @@ class CellCutter {
       // A loop winds by a multiple of 2 pi / n.
       const double turns = winding * static_cast<double>(mesh_.fold()) / (2 * std::numbers::pi);
       if (std::abs(turns) < 0.5) continue;
-      for (const VertexId v : loop) end_[idx(v)] |= turns > 0 ? kOuter : kInner;
+      const auto c = static_cast<std::size_t>(component_[triangle_of(h)]);
+      std::vector<VertexId>& end = turns > 0 ? outer_[c] : inner_[c];
+      end.insert(end.end(), loop.begin(), loop.end());
     }
-    if (mesh_.centre() >= 0) end_[idx(mesh_.centre())] |= kInner;
+    std::sort(wedges_.begin(), wedges_.end());
+    const VertexId o = mesh_.centre();
+    if (o < 0) return;
+    StarItem item = star_item(mesh_, mesh_.corner_of(o));
+    if (!to_star_begin(mesh_, item)) {
+      inner_[static_cast<std::size_t>(component_[item.t])].push_back(o);
+    }
   }
 
   // The boundary half-edge that starts where this one ends.
@@ -107,70 +117,84 @@ class CellCutter {
   // Shortest path of edges from the inner to the outer end: fewest edges, then (among those met in
   // breadth-first order) shortest. Edges of the domain's boundary cost nothing, so this is a
   // breadth-first search on a double-ended queue.
-  void cut_component(TriangleId seed) {
-    const std::int32_t id = component_[seed];
+  void cut_component(std::int32_t id) {
+    const auto c = static_cast<std::size_t>(id);
+    if (inner_[c].empty() || outer_[c].empty()) return;
+    reach_.assign(mesh_.vertex_slots(), {});
+    for (const VertexId v : outer_[c]) reach_[idx(v)].is_goal = true;
     std::deque<VertexId> queue;
-    if (distance_.empty()) distance_.assign(mesh_.vertex_slots(), {});
-    for (TriangleId t = 0; t < mesh_.triangle_slots(); ++t) {
-      if (component_[t] != id) continue;
-      for (const VertexId v : mesh_.triangle(t).v) {
-        if ((end_[idx(v)] & kInner) != 0 && distance_[idx(v)].hops == kUnset) {
-          distance_[idx(v)].hops = 0;
-          queue.push_back(v);
-        }
-      }
+    for (const VertexId v : inner_[c]) {
+      reach_[idx(v)].hops = 0;
+      queue.push_back(v);
     }
     while (!queue.empty()) {
-      const VertexId at = queue.front();
+      const VertexId v = queue.front();
       queue.pop_front();
-      if (distance_[idx(at)].done) continue;
-      distance_[idx(at)].done = true;
-      const Reach here = distance_[idx(at)];
-      if ((end_[idx(at)] & kOuter) != 0) {
-        trace(at);
+      if (reach_[idx(v)].done) continue;
+      reach_[idx(v)].done = true;
+      if (reach_[idx(v)].is_goal) {
+        trace(v);
         return;
       }
-      StarItem item = star_item(mesh_, mesh_.corner_of(at));
-      to_star_begin(mesh_, item);
-      const StarItem begin = item;
-      // `leaves`: h starts at this vertex, so its triangle is on the left of the way out. An edge
-      // of the domain's boundary costs nothing: no symmetry edge lies there.
-      const auto relax = [&](HalfEdge h, const Corner& to, bool leaves) {
-        Reach& there = distance_[idx(to.v)];
-        if (there.done) return;
-        const bool open = mesh_.triangle(triangle_of(h)).nb[local_of(h)] == kNoHalfEdge;
-        const std::int32_t hops = here.hops + (open ? 0 : 1);
-        const double len =
-            here.length + (open ? 0 : distance(mesh_.point(at), mesh_.lift(to.v, to.k)));
-        if (there.hops == kUnset || hops < there.hops ||
-            (hops == there.hops && len < there.length)) {
-          const bool nearer = there.hops == kUnset || hops < there.hops;
-          there = {hops, len, h, at, leaves, false};
-          if (!nearer) return;  // queued already
-          if (open) {
-            queue.push_front(to.v);
-          } else {
-            queue.push_back(to.v);
-          }
-        }
-      };
-      for (;;) {
-        relax(3 * item.t + prev3(item.i), star_corner(mesh_, item, 1), true);
-        const StarItem last = item;
-        if (!rotate_ccw(mesh_, item)) {
-          relax(3 * last.t + next3(last.i), star_corner(mesh_, last, 2), false);
-          break;
-        }
-        if (item.t == begin.t && item.i == begin.i) break;
+      visit_edges(v, id, queue);
+    }
+  }
+
+  // Looks at the edges at v in the component, wedge by wedge where v lies on the boundary.
+  void visit_edges(VertexId v, std::int32_t id, std::deque<VertexId>& queue) {
+    const auto first = std::lower_bound(wedges_.begin(), wedges_.end(), std::pair(v, HalfEdge{0}));
+    if (first == wedges_.end() || first->first != v) {
+      visit_wedge(v, mesh_.corner_of(v), queue);
+      return;
+    }
+    for (auto it = first; it != wedges_.end() && it->first == v; ++it) {
+      if (component_[triangle_of(it->second)] == id) visit_wedge(v, it->second, queue);
+    }
+  }
+
+  void visit_wedge(VertexId v, HalfEdge corner, std::deque<VertexId>& queue) {
+    StarItem item = star_item(mesh_, corner);
+    const StarItem begin = item;
+    for (;;) {
+      relax(v, 3 * item.t + prev3(item.i), star_corner(mesh_, item, 1), true, queue);
+      const StarItem last = item;
+      if (!rotate_ccw(mesh_, item)) {
+        relax(v, 3 * last.t + next3(last.i), star_corner(mesh_, last, 2), false, queue);
+        return;
       }
+      if (item.t == begin.t && item.i == begin.i) return;
+    }
+  }
+
+  // `leaves`: h starts at v, so its triangle is on the left of the way out. No symmetry edge lies
+  // on the domain's boundary: such edges are free.
+  void relax(VertexId v, HalfEdge h, Corner to, bool leaves, std::deque<VertexId>& queue) {
+    const Reach here = reach_[idx(v)];
+    Reach& there = reach_[idx(to.v)];
+    if (there.done) return;
+    const bool open = mesh_.triangle(triangle_of(h)).nb[local_of(h)] == kNoHalfEdge;
+    const std::int32_t hops = here.hops + (open ? 0 : 1);
+    const double len = here.length + (open ? 0 : distance(mesh_.point(v), mesh_.lift(to.v, to.k)));
+    const bool nearer = there.hops == kUnset || hops < there.hops;
+    if (!nearer && (hops > there.hops || len >= there.length)) return;
+    there.hops = hops;
+    there.length = len;
+    there.via = h;
+    there.from = v;
+    there.leaves = leaves;
+    if (!nearer) return;  // queued already
+    if (open) {
+      queue.push_front(to.v);
+    } else {
+      queue.push_back(to.v);
     }
   }
 
   // Marks the path that ends at v. On the left of the way out, counter-clockwise about the centre,
   // is the side of the lower bound.
   void trace(VertexId v) {
-    while (distance_[idx(v)].via != kNoHalfEdge) {
-      const Reach& reach = distance_[idx(v)];
+    while (reach_[idx(v)].via != kNoHalfEdge) {
+      const Reach& reach = reach_[idx(v)];
       const HalfEdge g = mesh_.triangle(triangle_of(reach.via)).nb[local_of(reach.via)];
       if (g != kNoHalfEdge) {
         is_cut_[reach.via] = is_cut_[g] = 1;
@@ -244,13 +268,15 @@ class CellCutter {
     VertexId from = -1;
     bool leaves = false;
     bool done = false;
+    bool is_goal = false;  // on the outer end
   };
 
   const QuotientTriangulation& mesh_;
   std::vector<std::int32_t> component_;
-  std::vector<std::uint8_t> end_;
   std::vector<std::uint8_t> is_cut_;
-  std::vector<Reach> distance_;
+  std::vector<std::vector<VertexId>> inner_, outer_;   // per component
+  std::vector<std::pair<VertexId, HalfEdge>> wedges_;  // first corner of each wedge at the boundary
+  std::vector<Reach> reach_;                           // per vertex, of one component
   std::vector<TriangleId> seeds_;
   std::vector<TriangleId> stack_;
   CellCut cut_;

@@ -10,12 +10,14 @@
 //   *.mid_nodes                  order 2: one node an edge, at its midpoint
 //   cell.pairs                   a node rotated by +360/n is its pair; one to one; centre to itself
 //   cell.bounds                  lower edges go to higher ones, seen from the other side
-//   full.copies                  n rotated cells, element by element, each once, regions alike
+//   full.copies                  n rotated cells, element by element, each once (regions that
+//                                differ are told only: with ignore_markers they may)
 //   full.area                    n times the cell's area; the model's area, where it is given
-//   model.vertices, .segments    vertices are nodes, segments chains of mesh edges
+//   model.vertices, .segments    vertices are nodes, segments chains of mesh edges, but for those
+//                                that dangle outside the meshed domain
 //   model.boundary               the mesh's boundary lies on segments
-//   model.holes, .regions        no triangle at a hole's seed; the seed's attribute at a region's;
-//                                regions change at segments only
+//   model.holes, .regions        no triangle at a hole's seed; the seed's attribute at a region's
+//   model.region_borders         regions change at segments only
 //   full.delaunay                share of unconstrained edges that are locally Delaunay (told only)
 #pragma once
 

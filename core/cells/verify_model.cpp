@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 
@@ -56,12 +57,11 @@ class ModelChecker {
 
   std::vector<char> run() {
     collect_neighbours();
-    if (match_vertices()) {
-      check_segments();
-      check_boundary();
-      check_region_borders();
-    }
-    check_seeds();
+    if (!match_vertices()) return std::move(constrained_);
+    cover_segments();
+    check_points();
+    check_boundary();
+    check_region_borders();
     return std::move(constrained_);
   }
 
@@ -86,7 +86,8 @@ class ModelChecker {
     }
   }
 
-  // Vertices that no segment names need not be nodes.
+  // Vertices that no segment names need not be nodes; nor need those outside the meshed domain,
+  // where a dangling segment may end: check_points looks at them.
   bool match_vertices() {
     const NodeFinder finder(full_.points);
     std::vector<char> named(model_.vertices.size(), 0);
@@ -100,22 +101,22 @@ class ModelChecker {
       }
     }
     node_of_.assign(model_.vertices.size(), -1);
-    std::string wrong;
-    for (std::size_t v = 0; v < named.size() && wrong.empty(); ++v) {
+    for (std::size_t v = 0; v < named.size(); ++v) {
       const auto node = finder.find(model_.vertices[v], tolerance_);
       if (node) {
         node_of_[v] = *node;
       } else if (named[v] != 0) {
-        wrong = "vertex " + std::to_string(v) + " of the model is no node of the mesh";
+        points_.push_back({model_.vertices[v], Role::kVertex, v, false});
       }
     }
-    return checks_.add("model.vertices", wrong.empty(), wrong);
+    return true;
   }
 
   // Walks from one end to the other along edges that lie on the segment.
   bool cover(const PslgSegment& segment) {
     std::int32_t at = node_of_[static_cast<std::size_t>(segment.a)];
     const std::int32_t end = node_of_[static_cast<std::size_t>(segment.b)];
+    if (at < 0 || end < 0) return false;
     const Point2 b = model_.vertices[static_cast<std::size_t>(segment.b)];
     const Point2 a = model_.vertices[static_cast<std::size_t>(segment.a)];
     const double length = distance(a, b);
@@ -146,15 +147,17 @@ class ModelChecker {
     return e.low == node ? e.high : e.low;
   }
 
-  void check_segments() {
-    std::string wrong;
+  // A segment that is no chain of edges must lie outside the meshed domain: samples of it tell.
+  void cover_segments() {
+    constexpr double kSamples[] = {0.137, 0.381, 0.5, 0.618, 0.893};
     for (std::size_t s = 0; s < model_.segments.size(); ++s) {
-      if (!cover(model_.segments[s]) && wrong.empty()) {
-        wrong = "segment " + std::to_string(s) + " of the model is no chain of mesh edges";
+      if (cover(model_.segments[s])) continue;
+      const Point2 a = model_.vertices[static_cast<std::size_t>(model_.segments[s].a)];
+      const Point2 b = model_.vertices[static_cast<std::size_t>(model_.segments[s].b)];
+      for (const double t : kSamples) {
+        points_.push_back({a + t * (b - a), Role::kSegment, s, false});
       }
     }
-    checks_.add("model.segments", wrong.empty(),
-                wrong.empty() ? std::to_string(model_.segments.size()) + " segments" : wrong);
   }
 
   void check_boundary() {
@@ -182,58 +185,73 @@ class ModelChecker {
     checks_.add("model.region_borders", wrong.empty(), wrong);
   }
 
-  struct Seed {
+  // Points of the model of which it matters whether an element is there.
+  enum class Role : std::uint8_t { kVertex, kSegment, kHole, kRegion };
+  struct ModelPoint {
     Point2 point;
-    bool hole = false;
+    Role role = Role::kVertex;
     std::size_t index = 0;
     bool found = false;  // in an element
   };
 
-  void check_seeds() {
-    std::vector<Seed> seeds;
+  void check_points() {
     for (std::size_t i = 0; i < model_.holes.size(); ++i) {
-      seeds.push_back({model_.holes[i], true, i, false});
+      points_.push_back({model_.holes[i], Role::kHole, i, false});
     }
     for (std::size_t i = 0; i < model_.regions.size(); ++i) {
-      seeds.push_back({model_.regions[i].point, false, i, false});
+      points_.push_back({model_.regions[i].point, Role::kRegion, i, false});
     }
-    std::ranges::sort(seeds, {}, [](const Seed& s) { return s.point.x; });
-    std::string wrong_hole;
-    std::string wrong_region;
-    const auto k = static_cast<std::size_t>(full_.nodes_per_element);
-    for (std::size_t e = 0; e < full_.element_count() && !seeds.empty(); ++e) {
-      const std::int32_t* nodes = &full_.elements[e * k];
-      const Point2 a = point(nodes[0]);
-      const Point2 b = point(nodes[1]);
-      const Point2 c = point(nodes[2]);
-      auto at = std::ranges::lower_bound(seeds, std::min({a.x, b.x, c.x}), {},
-                                         [](const Seed& s) { return s.point.x; });
-      const double right = std::max({a.x, b.x, c.x});
-      for (; at != seeds.end() && at->point.x <= right; ++at) {
-        const Point2 p = at->point;
-        const bool inside = orientation(a, b, p) != Sign::kNegative &&
-                            orientation(b, c, p) != Sign::kNegative &&
-                            orientation(c, a, p) != Sign::kNegative;
-        if (!inside) continue;
-        at->found = true;
-        if (at->hole) {
-          wrong_hole = "element " + std::to_string(e) + " covers the seed of hole " +
-                       std::to_string(at->index);
-        } else if (full_.regions[e] != model_.regions[at->index].attribute) {
-          wrong_region = "element " + std::to_string(e) + " at the seed of region " +
-                         std::to_string(at->index) + " has attribute " +
-                         std::to_string(full_.regions[e]);
-        }
+    std::ranges::sort(points_, {}, [](const ModelPoint& p) { return p.point.x; });
+    for (std::size_t e = 0; e < full_.element_count() && !points_.empty(); ++e) find_points(e);
+    for (const ModelPoint& p : points_) {
+      if (p.role == Role::kRegion && !p.found) {
+        wrong(Role::kRegion) = "no element at the seed of region " + std::to_string(p.index);
       }
     }
-    for (const Seed& s : seeds) {
-      if (!s.hole && !s.found) {
-        wrong_region = "no element at the seed of region " + std::to_string(s.index);
-      }
+    static constexpr const char* kNames[] = {"model.vertices", "model.segments", "model.holes",
+                                             "model.regions"};
+    for (std::size_t role = 0; role < 4; ++role) {
+      checks_.add(kNames[role], wrong_[role].empty(), wrong_[role]);
     }
-    checks_.add("model.holes", wrong_hole.empty(), wrong_hole);
-    checks_.add("model.regions", wrong_region.empty(), wrong_region);
   }
+
+  // Marks the points in element `e` and tells what is wrong with them there.
+  void find_points(std::size_t e) {
+    const std::int32_t* nodes =
+        &full_.elements[e * static_cast<std::size_t>(full_.nodes_per_element)];
+    const Point2 a = point(nodes[0]);
+    const Point2 b = point(nodes[1]);
+    const Point2 c = point(nodes[2]);
+    auto at = std::ranges::lower_bound(points_, std::min({a.x, b.x, c.x}), {},
+                                       [](const ModelPoint& p) { return p.point.x; });
+    const double right = std::max({a.x, b.x, c.x});
+    for (; at != points_.end() && at->point.x <= right; ++at) {
+      const Point2 p = at->point;
+      const bool inside = orientation(a, b, p) != Sign::kNegative &&
+                          orientation(b, c, p) != Sign::kNegative &&
+                          orientation(c, a, p) != Sign::kNegative;
+      if (!inside) continue;
+      at->found = true;
+      const std::string index = std::to_string(at->index);
+      const std::string element = "element " + std::to_string(e);
+      switch (at->role) {
+        case Role::kVertex:
+          wrong(at->role) = "vertex " + index + " of the model is no node but lies in " + element;
+          break;
+        case Role::kSegment:
+          wrong(at->role) = "segment " + index + " of the model is no chain of edges in " + element;
+          break;
+        case Role::kHole: wrong(at->role) = element + " covers the seed of hole " + index; break;
+        case Role::kRegion:
+          if (full_.regions[e] == model_.regions[at->index].attribute) break;
+          wrong(at->role) = element + " at the seed of region " + index + " has attribute " +
+                            std::to_string(full_.regions[e]);
+          break;
+      }
+    }
+  }
+
+  std::string& wrong(Role role) { return wrong_[static_cast<std::size_t>(role)]; }
 
   const MeshData& full_;
   const std::vector<HalfEdge>& edges_;
@@ -245,6 +263,8 @@ class ModelChecker {
   std::vector<std::size_t> first_;   // of each node in around_
   std::vector<std::size_t> around_;  // groups of edges
   std::vector<std::int32_t> node_of_;
+  std::vector<ModelPoint> points_;
+  std::array<std::string, 4> wrong_;  // by role
 };
 
 }  // namespace

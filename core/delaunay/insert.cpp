@@ -1,5 +1,7 @@
 #include "core/delaunay/insert.hpp"
 
+#include <algorithm>
+
 #include "core/delaunay/lifted_predicates.hpp"
 
 namespace symcell {

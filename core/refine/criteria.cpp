@@ -44,39 +44,27 @@ Criteria::Criteria(const QuotientTriangulation& mesh,
 
 void Criteria::find_corners(const QuotientTriangulation& mesh) {
   acute_.assign(mesh.vertex_slots(), 0);
-  const auto edge_is_segment = [&](const StarItem& item, std::uint32_t which) {
-    const Triangle& tri = mesh.triangle(item.t);
-    return tri.seg[which == 1 ? prev3(item.i) : next3(item.i)] != kNoSubsegment;
-  };
-  for (std::size_t id = 0; id < mesh.vertex_slots(); ++id) {
-    const auto v = static_cast<VertexId>(id);
-    if (mesh.corner_of(v) == kNoHalfEdge) continue;
-    StarItem item = star_item(mesh, mesh.corner_of(v));
-    const bool open = to_star_begin(mesh, item);
-    // A star that closes is begun at a segment, if it has one.
-    const StarItem first = item;
-    if (!open) {
-      while (!edge_is_segment(item, 1)) {
-        if (!rotate_ccw(mesh, item) || (item.t == first.t && item.i == first.i)) break;
+  // Each corner of the input begins at a triangle whose clockwise side at the vertex is a segment,
+  // whatever wedges the vertex has.
+  for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      if (mesh.triangle(t).seg[prev3(i)] == kNoSubsegment) continue;
+      const VertexId v = mesh.triangle(t).v[i];
+      StarItem item = star_item(mesh, 3 * t + i);
+      const auto direction = [&](std::uint32_t which) {
+        const Corner c = star_corner(mesh, item, which);
+        return mesh.lift(c.v, c.k) - mesh.point(v);
+      };
+      const Point2 from = direction(1);
+      while (mesh.triangle(item.t).seg[next3(item.i)] == kNoSubsegment) {
+        if (!rotate_ccw(mesh, item)) break;
       }
-      if (!edge_is_segment(item, 1)) continue;
-    }
-    const StarItem begin = item;
-    const Point2 p = mesh.point(v);
-    const auto direction = [&](const StarItem& at, std::uint32_t which) {
-      const Corner c = star_corner(mesh, at, which);
-      return mesh.lift(c.v, c.k) - p;
-    };
-    Point2 from = direction(item, 1);
-    for (;;) {
-      if (edge_is_segment(item, 2)) {
-        const Point2 to = direction(item, 2);
-        add_corner(mesh, v, from, to);
-        from = to;
-      }
-      if (!rotate_ccw(mesh, item) || (item.t == begin.t && item.i == begin.i)) break;
+      add_corner(mesh, v, from, direction(2));
     }
   }
+  std::sort(narrow_.begin(), narrow_.end(),
+            [](const NarrowCorner& a, const NarrowCorner& b) { return a.v < b.v; });
 }
 
 void Criteria::add_corner(const QuotientTriangulation& mesh, VertexId v, Point2 from, Point2 to) {
