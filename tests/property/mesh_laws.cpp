@@ -386,7 +386,7 @@ class LawChecker {
       for (std::size_t i = 0; i < 3; ++i) least = std::min(least, corner_angle(t, i));
       const double goal = options_.min_angle_deg + kGoalMargin;
       if (options_.min_angle_deg > 0) {
-        surely_below += least < goal - kAngleTolerance ? 1 : 0;
+        surely_below += least < options_.min_angle_deg - kAngleTolerance ? 1 : 0;
         perhaps_below += least < goal + kAngleTolerance ? 1 : 0;
       }
       if (least >= options_.min_angle_deg - kAngleTolerance || is_exempt(t)) continue;
