@@ -107,6 +107,17 @@ TEST(VerifyMesh, EveryFlawIsFound) {
   }
 }
 
+// Constraints may end in the open, where nothing is meshed.
+TEST(VerifyMesh, SegmentsOutsideTheDomainAreNoFlaw) {
+  const MeshData cell = read(test::disc_cell(5, 2, {0, 0}), MeshPart::kCell);
+  Pslg model = test::disc_model(5, 2, {0, 0});
+  model.vertices.push_back({5, 5});
+  const auto out = static_cast<std::int32_t>(model.vertices.size()) - 1;
+  model.segments.push_back({0, out, 0});
+  const auto report = verify_mesh(cell, nullptr, &model, {});
+  EXPECT_TRUE(report.ok()) << failures(report);
+}
+
 // A pair that is left out leaves a slit in the restored mesh.
 TEST(VerifyMesh, MissingPairsShowInTheRestoredMesh) {
   const SymmetryCellMesh mesh = test::ring_cell({});
