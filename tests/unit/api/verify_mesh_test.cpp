@@ -78,7 +78,7 @@ TEST(VerifyMesh, EveryFlawIsFound) {
       {"model.vertices", [](auto&, auto&, auto& m) { m.vertices[0].x += 0.01; }},
       {"model.segments",
        [](auto&, auto&, auto& m) {
-         m.segments.push_back({0, 9, 0});
+         m.segments.push_back({0, 20, 0});
        }},
       {"model.boundary", [](auto&, auto&, auto& m) { m.segments.pop_back(); }},
       {"model.holes",
