@@ -42,11 +42,12 @@ ensure_packages() {
     apt-get install --yes --no-install-recommends "${missing[@]}" >&2 < /dev/null
 }
 
-# Configures the release preset where that was not done yet, and builds targets: all, or those named.
+# Configures the release preset where that was not done yet, and builds targets: all, or those named,
+# which then goes without a word if the program is there already.
 build_release() {
   local quiet=() targets=()
   [[ -f build/release/build.ninja ]] || cmake --preset release >&2
-  [[ -x build/release/symcell ]] && quiet=(-- --quiet)
   (($#)) && targets=(--target "$@")
+  (($#)) && [[ -x build/release/symcell ]] && quiet=(-- --quiet)
   cmake --build --preset release "${targets[@]}" "${quiet[@]}" >&2
 }
