@@ -5,8 +5,8 @@
 
 namespace symcell {
 
-// The same mesh with one mid-side node an edge at its midpoint, shared between elements, and between
-// the bounds as one orbit.  Requires: mesh.order == 1.  Cost: O(elements log elements).
+// The same mesh with one mid-side node an edge at its midpoint, shared between elements, and
+// between the bounds as one orbit.  Requires: mesh.order == 1.  Cost: O(elements log elements).
 [[nodiscard]] SymmetryCellMesh elevate_to_quadratic(const SymmetryCellMesh& mesh);
 
 }  // namespace symcell

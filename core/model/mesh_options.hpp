@@ -16,14 +16,14 @@ inline constexpr std::int32_t kMaxFold = 30'000;
 
 // Values are what a user writes in `options`; infinities mean "no bound".
 struct MeshOptions {
-  std::optional<std::int32_t> fold;    // nullopt: detect; 1: no symmetry
-  bool ignore_markers = false;         // markers and region attributes take no part in the symmetry
-  std::optional<Point2> center;        // nullopt: detect
+  std::optional<std::int32_t> fold;  // nullopt: detect; 1: no symmetry
+  bool ignore_markers = false;       // markers and region attributes take no part in the symmetry
+  std::optional<Point2> center;      // nullopt: detect
   double symmetry_tolerance_rel = 1e-6;  // of the model's diameter (bounding-box diagonal)
   double min_angle_deg = 30;
-  double max_area = kInfinity;         // input units squared
-  double max_edge = kInfinity;         // input units
-  std::int32_t order = 1;              // 1: linear, 2: quadratic with mid-side nodes
+  double max_area = kInfinity;              // input units squared
+  double max_edge = kInfinity;              // input units
+  std::int32_t order = 1;                   // 1: linear, 2: quadratic with mid-side nodes
   std::uint64_t max_elements = 50'000'000;  // of the cell
   double time_limit_s = kInfinity;
   std::uint64_t seed = 0;

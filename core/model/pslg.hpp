@@ -10,14 +10,14 @@
 namespace symcell {
 
 struct PslgSegment {
-  std::int32_t a = 0;       // vertex indices, from 0
+  std::int32_t a = 0;  // vertex indices, from 0
   std::int32_t b = 0;
   std::int32_t marker = 0;  // 0: none given
   friend bool operator==(const PslgSegment&, const PslgSegment&) = default;
 };
 
 struct PslgRegion {
-  Point2 point;                // any point inside the subdomain
+  Point2 point;  // any point inside the subdomain
   std::int32_t attribute = 0;
   double max_area = std::numeric_limits<double>::infinity();  // input units squared; inf: none
   friend bool operator==(const PslgRegion&, const PslgRegion&) = default;

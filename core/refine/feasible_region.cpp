@@ -125,11 +125,22 @@ bool FeasibleRegion::clip_by_wedges(const std::vector<StarEdge>& edges, Point2 o
   return true;
 }
 
+// The triangles fill the polygon: none can be had if it is larger than all their area bounds.
+bool FeasibleRegion::too_large(const std::vector<StarEdge>& edges, Point2 origin) {
+  double doubled = 0, allowed = 0;
+  for (const StarEdge& e : edges) {
+    doubled += cross(e.a - origin, e.b - origin);
+    allowed += e.max_area;
+  }
+  return doubled > 2 * allowed;
+}
+
 std::optional<Point2> FeasibleRegion::find(const std::vector<StarEdge>& edges) {
   if (edges.size() > most_edges_ || edges.size() < 3) return std::nullopt;
   // Near the origin, differences keep their digits.
   const Point2 origin = edges.front().a;
-  if (!start(edges, origin) || !clip_by_wedges(edges, origin)) return std::nullopt;
+  if (too_large(edges, origin) || !start(edges, origin) || !clip_by_wedges(edges, origin))
+    return std::nullopt;
   for (int cut = 0; cut < kMaxCuts; ++cut) {
     const Point2 x = centroid(polygon_);
     double worst = 0;

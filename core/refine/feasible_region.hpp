@@ -49,6 +49,7 @@ class FeasibleRegion {
   // Keeps the part of the polygon with dot(normal, x) <= offset; false if nothing is left.
   bool clip(Point2 normal, double offset);
   [[nodiscard]] bool clip_by_wedges(const std::vector<StarEdge>& edges, Point2 origin);
+  [[nodiscard]] static bool too_large(const std::vector<StarEdge>& edges, Point2 origin);
   [[nodiscard]] bool start(const std::vector<StarEdge>& edges, Point2 origin);
 
   double alpha_;

@@ -323,7 +323,8 @@ class RandomModel {
     traits_.regions = true;
     const Point2 between =
         0.5 * (builder_.position(outer.vertices[o]) + builder_.position(inner.vertices[i]));
-    builder_.add_region(polar(length(between), outer.angles[o] + 0.3 * sector_), integer(1, 5),
+    // Near the spoke: further round, a coarse loop may pass on the other side.
+    builder_.add_region(polar(length(between), outer.angles[o] + 0.003 * sector_), integer(1, 5),
                         max_area());
   }
 
