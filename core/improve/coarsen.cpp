@@ -13,8 +13,8 @@ constexpr double kLeastGain = 0.001;
 constexpr int kMaxRounds = 24;
 constexpr std::size_t kVertexVisits = 30'000;
 // Moves tried to mend one removal before it is taken back.
-constexpr int kMendingMoves = 6;
-constexpr std::size_t kMostBadToMend = 8;
+constexpr int kMendingMoves = 4;
+constexpr std::size_t kMostBadToMend = 3;
 // A star this much too large for the area bound may still lose its vertex: mending moves
 // neighbours.
 constexpr double kRoomSlack = 1.2;
