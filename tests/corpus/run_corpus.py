@@ -2,7 +2,8 @@
 """Meshes the model corpus beside the source tree with the real program and has every mesh checked.
 
 The corpus and meshcheck.py, a checker that shares no code with the mesher, live in the folder
-`shared` next to the source tree; without it the run is skipped (exit code 77).
+`shared` next to the source tree; without it, or what the checker needs, the run is skipped (exit
+code 77).
 
     run_corpus.py meshes --symcell BINARY [--angles 20,30] [--models p2_01,...] [--jobs N]
     run_corpus.py bad --symcell BINARY
@@ -13,6 +14,7 @@ needs for the same model (peers.json), and the geometric means over exactly symm
 
 import argparse
 import concurrent.futures
+import importlib.util
 import json
 import math
 import os
@@ -218,7 +220,13 @@ def main():
     if not SHARED.is_dir():
         print("SKIPPED: ../shared is absent")
         return SKIPPED
-    return mesh_all(args) if args.what == "meshes" else refuse_all(args)
+    if args.what == "bad":
+        return refuse_all(args)
+    missing = [name for name in ("numpy", "scipy") if importlib.util.find_spec(name) is None]
+    if missing:
+        print(f"SKIPPED: meshcheck.py needs {' and '.join(missing)}")
+        return SKIPPED
+    return mesh_all(args)
 
 
 if __name__ == "__main__":
