@@ -113,6 +113,10 @@ class DelaunayEditor {
   [[nodiscard]] bool in_conflict(TriangleId t, std::int32_t e, Point2 x) const;
   [[nodiscard]] bool star_is_positive(Point2 x, const Cavity& cavity) const;
   void check_outside(Cavity& cavity) const;
+  [[nodiscard]] bool must_flip(const Triangle& tri,
+                               std::uint32_t j,
+                               const Triangle& other,
+                               std::uint32_t i) const;
   VertexId place(Point2 x, const Cavity& cavity, VertexKind kind, bool closed);
   void split_subsegment(SubsegmentId s, VertexId x, const Cavity& cavity);
   VertexId insert_near_edge(TriangleId t, Point2 x, VertexKind kind);

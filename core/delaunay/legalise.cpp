@@ -3,6 +3,26 @@
 
 namespace symcell {
 
+// Whether the other triangle's corner i lies inside the circle of the first, whose edge j they
+// share.
+bool DelaunayEditor::must_flip(const Triangle& tri,
+                               std::uint32_t j,
+                               const Triangle& other,
+                               std::uint32_t i) const {
+  const std::uint32_t jn = next3(j), jp = prev3(j);
+  // In one frame the sign is exact, and a point inside the circle beyond the edge makes the
+  // quadrilateral strictly convex.
+  if ((tri.k[0] | tri.k[1] | tri.k[2] | other.k[i] | tri.off[j]) == 0) {
+    return in_circle(mesh_.point(tri.v[j]), mesh_.point(tri.v[jn]), mesh_.point(tri.v[jp]),
+                     mesh_.point(other.v[i])) == Sign::kPositive;
+  }
+  const Corner p{tri.v[j], tri.k[j]}, a{tri.v[jn], tri.k[jn]}, b{tri.v[jp], tri.k[jp]};
+  const Corner q{other.v[i], mesh_.shift(other.v[i], other.k[i], tri.off[j])};
+  return in_circle(mesh_, p, a, b, q) == Sign::kPositive &&
+         orientation(mesh_, p, a, q) == Sign::kPositive &&
+         orientation(mesh_, q, b, p) == Sign::kPositive;
+}
+
 void DelaunayEditor::legalise() {
   // Every flip strictly lowers the lifted surface (lifted_predicates.hpp), so this ends.
   while (!edges_.empty()) {
@@ -16,14 +36,7 @@ void DelaunayEditor::legalise() {
     if (u == t) continue;  // (o, a, Ra) is always locally Delaunay
     const Triangle& other = mesh_.triangle(u);
     const std::uint32_t i = local_of(tri.nb[j]);
-    const Corner p{tri.v[j], tri.k[j]};
-    const Corner a{tri.v[next3(j)], tri.k[next3(j)]}, b{tri.v[prev3(j)], tri.k[prev3(j)]};
-    const Corner q{other.v[i], mesh_.shift(other.v[i], other.k[i], tri.off[j])};
-    if (in_circle(mesh_, p, a, b, q) != Sign::kPositive) continue;
-    if (orientation(mesh_, p, a, q) != Sign::kPositive ||
-        orientation(mesh_, q, b, p) != Sign::kPositive) {
-      continue;
-    }
+    if (!must_flip(tri, j, other, i)) continue;
     if (tri.off[j] != 0) ++counters_.crossings;
     ++counters_.flips;
     mesh_.flip(h);

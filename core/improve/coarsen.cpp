@@ -11,7 +11,7 @@ namespace {
 // get fewer, so that the cost per triangle stays bounded.
 constexpr double kLeastGain = 0.001;
 constexpr int kMaxRounds = 24;
-constexpr std::size_t kVertexVisits = 30'000;
+constexpr std::size_t kVertexVisits = 16'000;
 // Moves tried to mend one removal before it is taken back.
 constexpr int kMendingMoves = 4;
 constexpr std::size_t kMostBadToMend = 3;
