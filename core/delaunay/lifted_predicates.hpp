@@ -41,17 +41,20 @@ inline constexpr double kLiftOrientationLength = 8.0 * kUnitRoundoff;
   return internal::decide(cross(ac, bc), bound);
 }
 
-[[nodiscard]] inline Sign certain_in_circle(Point2 a, Point2 b, Point2 c, Point2 d, double radius) {
+// The bound is the same whichever of the points is d. `slack`: factor on it, for checks that must
+// not call uncertain what was left alone as uncertain before with other roundings.
+[[nodiscard]] inline Sign certain_in_circle(
+    Point2 a, Point2 b, Point2 c, Point2 d, double radius, double slack = 1) {
   const Point2 ad = a - d, bd = b - d, cd = c - d;
-  const double extent = std::max(
-      {internal::radius_bound(ad), internal::radius_bound(bd), internal::radius_bound(cd)});
+  const double extent = std::max({a.x, b.x, c.x, d.x}) - std::min({a.x, b.x, c.x, d.x}) +
+                        std::max({a.y, b.y, c.y, d.y}) - std::min({a.y, b.y, c.y, d.y});
   const double determinant = squared_length(ad) * cross(bd, cd) +
                              squared_length(bd) * cross(cd, ad) +
                              squared_length(cd) * cross(ad, bd);
   const double bound =
       extent * extent * extent *
       (internal::kLiftInCircleRadius * radius + internal::kLiftInCircleLength * extent);
-  return internal::decide(determinant, bound);
+  return internal::decide(determinant, slack * bound);
 }
 
 namespace internal {
@@ -89,7 +92,7 @@ template <class... Corners>
 }
 
 [[nodiscard]] inline Sign in_circle(
-    const QuotientTriangulation& mesh, Corner a, Corner b, Corner c, Corner d) {
+    const QuotientTriangulation& mesh, Corner a, Corner b, Corner c, Corner d, double slack = 1) {
   if (internal::one_sheet(mesh, a, b, c, d)) {
     return in_circle(mesh.point(a.v), mesh.point(b.v), mesh.point(c.v), mesh.point(d.v));
   }
@@ -97,7 +100,8 @@ template <class... Corners>
   const Point2 r = mesh.lift(c.v, c.k), s = mesh.lift(d.v, d.k);
   return certain_in_circle(p, q, r, s,
                            std::max({internal::radius_bound(p), internal::radius_bound(q),
-                                     internal::radius_bound(r), internal::radius_bound(s)}));
+                                     internal::radius_bound(r), internal::radius_bound(s)}),
+                           slack);
 }
 
 }  // namespace symcell
