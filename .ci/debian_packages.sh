@@ -10,7 +10,7 @@ build_packages=(
   libgtest-dev librapidcheck-dev
 )
 # What tests run.
-test_packages=(curl gmsh python3 python3-yaml)
+test_packages=(curl gmsh python3 python3-numpy python3-scipy python3-yaml)
 # What the checks of .ci/run use beyond that.
 check_packages=(clang-format-14)
 
