@@ -68,8 +68,7 @@ Result<void> count_exempt(const QuotientTriangulation& mesh,
     if (!mesh.alive(t)) continue;
     const Assessment a = criteria.assess(mesh, mesh.triangle(t));
     if (a.verdict == Verdict::kGood) continue;
-    const Exemption why =
-        a.verdict == Verdict::kAngle ? criteria.exemption(mesh, t, a) : Exemption::kNone;
+    const Exemption why = a.too_large ? Exemption::kNone : criteria.exemption(mesh, t, a);
     if (why == Exemption::kNone) {
       return fail(ErrorCode::kInternal,
                   "triangle " + std::to_string(t) + " of the finished mesh breaks a bound");

@@ -87,12 +87,13 @@ Assessment Criteria::assess(Point2 a, Point2 b, Point2 c, std::int32_t face) con
   std::uint32_t s = e[0] < e[1] ? 0 : 1;
   if (e[2] < e[s]) s = 2;
   const double p = e[next3(s)], q = e[prev3(s)];
-  Assessment result{Verdict::kGood, e[s], s};
+  Assessment result{Verdict::kGood, false, e[s], s};
   if (has_size_bound_) {
     const double doubled_area = cross(ab, bc);
     if (doubled_area > 2 * max_area_[static_cast<std::size_t>(face)] || p > max_edge2_ ||
         q > max_edge2_) {
       result.verdict = Verdict::kSize;
+      result.too_large = true;
     }
   }
   // cos^2 of the smallest angle, which faces the shortest edge: ((p + q - s) / 2 sqrt(pq))^2.

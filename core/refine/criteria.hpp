@@ -38,8 +38,11 @@ enum class Exemption : std::uint8_t {
   kMet  // (o, a, Ra) where 360/n is the bound itself: keeps it, though not the margin
 };
 
+// A triangle bad in angle and size is kAngle and `too_large`: an excuse for the one is none for the
+// other.
 struct Assessment {
   Verdict verdict = Verdict::kGood;
+  bool too_large = false;
   double shortest2 = 0;        // squared length of the shortest edge
   std::uint32_t shortest = 0;  // that edge
 };
@@ -61,7 +64,7 @@ class Criteria {
   // Bad and not exempt.
   [[nodiscard]] bool is_bad(const QuotientTriangulation& mesh, TriangleId t) const {
     const Assessment a = assess(mesh, mesh.triangle(t));
-    return a.verdict == Verdict::kSize ||
+    return a.too_large ||
            (a.verdict == Verdict::kAngle && exemption(mesh, t, a) == Exemption::kNone);
   }
 

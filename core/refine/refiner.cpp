@@ -249,17 +249,8 @@ void Refiner::settle_star() {
 Refiner::Outcome Refiner::treat(TriangleId t) {
   const Assessment a = criteria_.assess(mesh_, mesh_.triangle(t));
   if (a.verdict == Verdict::kGood) return Outcome::kDone;
-  if (a.verdict == Verdict::kAngle && criteria_.exemption(mesh_, t, a) != Exemption::kNone) {
-    // Its angle is excused, its size is not.
-    const Triangle& tri = mesh_.triangle(t);
-    const Point2 p[3] = {mesh_.corner_point(tri, 0), mesh_.corner_point(tri, 1),
-                         mesh_.corner_point(tri, 2)};
-    const double longest2 = std::max(
-        {squared_distance(p[0], p[1]), squared_distance(p[1], p[2]), squared_distance(p[2], p[0])});
-    if (cross(p[1] - p[0], p[2] - p[0]) <= 2 * criteria_.max_area(tri.face) &&
-        longest2 <= criteria_.max_edge2()) {
-      return Outcome::kExempt;
-    }
+  if (!a.too_large && criteria_.exemption(mesh_, t, a) != Exemption::kNone) {
+    return Outcome::kExempt;
   }
   if (a.shortest2 < shortest_allowed2_) return Outcome::kStuck;
   if (relocate_ && a.verdict == Verdict::kAngle && relocate_corner_of(t)) return Outcome::kDone;

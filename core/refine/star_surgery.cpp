@@ -121,7 +121,7 @@ bool StarSurgery::merge(Corner kept, Corner removed) {
 bool StarSurgery::keep_if_sizes_hold(bool transaction) {
   if (!transaction) return true;
   for (const TriangleId t : editor_.created()) {
-    if (mesh_.alive(t) && criteria_.assess(mesh_, mesh_.triangle(t)).verdict == Verdict::kSize) {
+    if (mesh_.alive(t) && criteria_.assess(mesh_, mesh_.triangle(t)).too_large) {
       mesh_.rollback();
       editor_.created().clear();
       return false;

@@ -156,8 +156,8 @@ TEST(MeshPslgProperty, RegularModelsKeepTheLaws) {
 // that are met with equality at the centre, cascades under a bound on size only, signs at the edge
 // of certainty.
 TEST(MeshPslgProperty, CasesThatOnceFailed) {
-  for (const std::uint64_t seed : {14,   19,   22,   47,   68,   91,   456,  472,  1019, 1194,
-                                   1245, 1735, 1896, 2409, 3285, 3297, 3426, 3609, 4851, 5409}) {
+  for (const std::uint64_t seed : {14,   19,   22,   47,   68,   91,   456,  472,  1019, 1194, 1245,
+                                   1735, 1896, 2409, 3285, 3297, 3426, 3609, 4851, 5409, 21107}) {
     const RandomCase c = make_random_case(seed);
     const auto outcome = mesh(c.model, c.options);
     ASSERT_TRUE(outcome) << c << "\n" << outcome.error().message;
