@@ -1,7 +1,6 @@
 #include "core/mesh_pslg.hpp"
 
 #include <chrono>
-#include <optional>
 #include <string>
 
 #include "core/cells/build_cell_mesh.hpp"
@@ -20,9 +19,10 @@
 namespace symcell {
 namespace {
 
+// Near 40 degrees a run may cascade where another, with other sampled points, does not.
 constexpr int kAttempts = 6;
 constexpr int kSamples = 24;
-constexpr double kSamplingAngleDeg = 38;
+constexpr double kSamplingAngleDeg = 38;  // below, samples are taken from the second attempt on
 
 class Stopwatch {
  public:
@@ -83,6 +83,70 @@ Result<void> count_exempt(const QuotientTriangulation& mesh,
   return {};
 }
 
+struct WorkDone {
+  RefineCounters refined;
+  CoarsenCounters coarsened;
+  EditCounters edits;
+};
+
+// Refines until no triangle is bad, from the start again where a run cascades; then coarsens.
+Result<WorkDone> refine_and_coarsen(InitialTriangulation& start,
+                                    Criteria& criteria,
+                                    const MeshOptions& options,
+                                    Point2 center,
+                                    ExecutionContext& context) {
+  const QuotientTriangulation initial = start.mesh;
+  const Criteria initial_criteria = criteria;
+  for (int attempt = 0;; ++attempt) {
+    const bool sample =
+        !options.plain && (attempt > 0 || options.min_angle_deg >= kSamplingAngleDeg);
+    DelaunayEditor editor(start.mesh);
+    Refiner refiner(editor, criteria,
+                    {center, !options.plain, sample ? kSamples : 0,
+                     options.seed + static_cast<std::uint64_t>(attempt)},
+                    context);
+    if (auto ok = refiner.run(); !ok) {
+      const bool cascaded = ok.error().code == ErrorCode::kBoundUnreachable;
+      if (!cascaded || options.plain || attempt + 1 == kAttempts) {
+        return tl::unexpected<Error>(ok.error());
+      }
+      start.mesh = initial;
+      criteria = initial_criteria;
+      continue;
+    }
+    start.mesh.compact();
+    Coarsener coarsener(editor, criteria, refiner.surgery(), context);
+    if (!options.plain) {
+      if (auto ok = coarsener.run(); !ok) return tl::unexpected<Error>(ok.error());
+      start.mesh.compact();
+    }
+    return WorkDone{refiner.counters(), coarsener.counters(), editor.counters()};
+  }
+}
+
+void record(const SymmetricPslg& symmetric, Statistics::Symmetry& out) {
+  out.fold = symmetric.fold;
+  out.axis_origin = {symmetric.center.x, symmetric.center.y, 0};
+  out.error_rel = symmetric.symmetry_error_rel;
+  out.detected = symmetric.fold_detected;
+}
+
+// Steiner points are the vertices behind the `input_orbits` of the symmetrised model, a centre that
+// was added included.
+void record(const WorkDone& work,
+            const QuotientTriangulation& mesh,
+            std::size_t input_orbits,
+            Statistics::Refinement& out) {
+  for (std::size_t v = input_orbits; v < mesh.vertex_slots(); ++v) {
+    out.steiner_points += mesh.corner_of(static_cast<VertexId>(v)) != kNoHalfEdge ? 1 : 0;
+  }
+  out.splits = work.refined.splits;
+  out.relocations = work.refined.relocations + work.coarsened.relocations;
+  out.removed = work.refined.removed + work.coarsened.removed + work.coarsened.merged;
+  out.flips = work.edits.flips;
+  out.crossings = work.edits.crossings;
+}
+
 }  // namespace
 
 Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
@@ -95,77 +159,36 @@ Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
   if (auto ok = validate_pslg(pslg, context); !ok) return tl::unexpected<Error>(ok.error());
   auto symmetric = symmetrise(pslg, options, context);
   if (!symmetric) return tl::unexpected<Error>(symmetric.error());
+  record(*symmetric, stats.symmetry);
   stats.timings_ms.symmetry = watch.lap();
 
   context.report(Phase::kInitial, 0.08);
   auto start = triangulate_initial(*symmetric, context);
   if (!start) return tl::unexpected<Error>(start.error());
-  const std::size_t input_vertices = start->mesh.vertex_slots();
   stats.timings_ms.initial = watch.lap();
 
   Criteria criteria(start->mesh, start->subdomains, options);
   if (auto ok = check_area_budget(*start, criteria, context); !ok) {
     return tl::unexpected<Error>(ok.error());
   }
-  // Near 40 degrees a run may cascade where another, with other sampled points, does not: begin
-  // again from the initial triangulation a few times before giving up.
-  const QuotientTriangulation initial = start->mesh;
-  const Criteria initial_criteria = criteria;
-  DelaunayEditor editor(start->mesh);
-  std::optional<Refiner> refiner;
-  for (int attempt = 0;; ++attempt) {
-    const bool sample =
-        !options.plain && (attempt > 0 || options.min_angle_deg >= kSamplingAngleDeg);
-    refiner.emplace(editor, criteria,
-                    Refiner::Settings{symmetric->center, !options.plain, sample ? kSamples : 0,
-                                      options.seed + static_cast<std::uint64_t>(attempt)},
-                    context);
-    auto ok = refiner->run();
-    if (ok) break;
-    if (ok.error().code != ErrorCode::kBoundUnreachable || options.plain ||
-        attempt + 1 == kAttempts) {
-      return tl::unexpected<Error>(ok.error());
-    }
-    start->mesh = initial;
-    criteria = initial_criteria;
-  }
-  start->mesh.compact();
-  Coarsener coarsener(editor, criteria, refiner->surgery(), context);
-  if (!options.plain) {
-    if (auto ok = coarsener.run(); !ok) return tl::unexpected<Error>(ok.error());
-  }
-  if (!options.plain) start->mesh.compact();
-  if (auto ok = validate(start->mesh, ValidationLevel::kDelaunay); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  const auto work = refine_and_coarsen(*start, criteria, options, symmetric->center, context);
+  if (!work) return tl::unexpected<Error>(work.error());
+  record(*work, start->mesh, symmetric->orbit_points.size(), stats.refinement);
   stats.timings_ms.refine = watch.lap();
 
   context.report(Phase::kCell, 0.92, start->mesh.triangle_count(), 1);
+  if (auto ok = validate(start->mesh, ValidationLevel::kDelaunay); !ok) {
+    return tl::unexpected<Error>(ok.error());
+  }
+  if (auto ok = count_exempt(start->mesh, criteria, stats); !ok) {
+    return tl::unexpected<Error>(ok.error());
+  }
   auto cut = cut_cell(start->mesh);
   if (!cut) return tl::unexpected<Error>(cut.error());
   outcome.mesh = build_cell_mesh(*start, *cut, *symmetric);
   if (options.order == 2) outcome.mesh = elevate_to_quadratic(outcome.mesh);
   measure_cell_2(outcome.mesh, stats);
-  if (auto ok = count_exempt(start->mesh, criteria, stats); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
   stats.timings_ms.cell = watch.lap();
-
-  stats.symmetry.fold = symmetric->fold;
-  stats.symmetry.axis_origin = {symmetric->center.x, symmetric->center.y, 0};
-  stats.symmetry.error_rel = symmetric->symmetry_error_rel;
-  stats.symmetry.detected = symmetric->fold_detected;
-  const RefineCounters& done = refiner->counters();
-  for (std::size_t v = input_vertices; v < start->mesh.vertex_slots(); ++v) {
-    stats.refinement.steiner_points +=
-        start->mesh.kind(static_cast<VertexId>(v)) != VertexKind::kDeleted ? 1 : 0;
-  }
-  stats.refinement.splits = done.splits;
-  const CoarsenCounters& coarsened = coarsener.counters();
-  stats.refinement.relocations = done.relocations + coarsened.relocations;
-  stats.refinement.removed = done.removed + coarsened.removed + coarsened.merged;
-  stats.refinement.flips = editor.counters().flips;
-  stats.refinement.crossings = editor.counters().crossings;
   stats.timings_ms.total = total.lap();
   stats.peak_memory_bytes = peak_memory_bytes();
   context.report(Phase::kDone, 1, stats.cell.elements, 1);
