@@ -15,11 +15,10 @@ constexpr std::size_t kVertexVisits = 16'000;
 // Moves tried to mend one removal before it is taken back.
 constexpr int kMendingMoves = 4;
 constexpr std::size_t kMostBadToMend = 3;
-// A star this much too large for the area bound may still lose its vertex: mending moves
-// neighbours.
 // Neighbours up to this many times as far (squared) as the nearest are tried for a merge: the
 // others hardly ever have room (measured: a third of the time for nothing).
 constexpr double kNearNeighbour2 = 1.5;
+// A star this much too large for the area bound may still lose its vertex: mending moves others.
 constexpr double kRoomSlack = 1.2;
 
 }  // namespace
