@@ -84,7 +84,7 @@ def refinement(runs):
         """## Refinement
 
 n = 6. "Cell" meshes the symmetry cell, "whole" the same model with `--fold 1`. Time of refinement and
-coarsening, the check of the finished mesh included; µs are per triangle that was made.
+coarsening; µs are per triangle that was made.
 """
     )
     sizes = sorted({key[2] for key in runs if key[0] == "refine"})
