@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <string>
+#include <utility>
 
 #include "core/cells/build_cell_mesh.hpp"
 #include "core/cells/extract_cell.hpp"
@@ -23,6 +24,10 @@ namespace {
 constexpr int kAttempts = 6;
 constexpr int kSamples = 24;
 constexpr double kSamplingAngleDeg = 38;  // below, samples are taken from the second attempt on
+// Small cells are made several times with other samples and the one with the fewest triangles is
+// kept: a few milliseconds each, and greedy coarsening ends in different places.
+constexpr std::size_t kSmallCell = 1000;
+constexpr int kFurtherStarts = 5;
 
 class Stopwatch {
  public:
@@ -89,39 +94,61 @@ struct WorkDone {
   EditCounters edits;
 };
 
-// Refines until no triangle is bad, from the start again where a run cascades; then coarsens.
-Result<WorkDone> refine_and_coarsen(InitialTriangulation& start,
+// Refines until no triangle is bad, then coarsens.
+Result<WorkDone> refine_and_coarsen(QuotientTriangulation& mesh,
+                                    Criteria& criteria,
+                                    const Refiner::Settings& settings,
+                                    ExecutionContext& context) {
+  DelaunayEditor editor(mesh);
+  Refiner refiner(editor, criteria, settings, context);
+  if (auto ok = refiner.run(); !ok) return tl::unexpected<Error>(ok.error());
+  mesh.compact();
+  Coarsener coarsener(editor, criteria, refiner.surgery(), context);
+  if (settings.relocate) {
+    if (auto ok = coarsener.run(); !ok) return tl::unexpected<Error>(ok.error());
+    mesh.compact();
+  }
+  return WorkDone{refiner.counters(), coarsener.counters(), editor.counters()};
+}
+
+// From the initial triangulation again, with other samples, where a run cascades; and a few times
+// more where the cell is small, keeping the best.
+Result<WorkDone> refine_from_starts(InitialTriangulation& start,
                                     Criteria& criteria,
                                     const MeshOptions& options,
                                     Point2 center,
                                     ExecutionContext& context) {
+  const auto attempt = [&](QuotientTriangulation& mesh, Criteria& own, int number) {
+    const bool sample =
+        !options.plain && (number > 0 || options.min_angle_deg >= kSamplingAngleDeg);
+    return refine_and_coarsen(mesh, own,
+                              {center, !options.plain, sample ? kSamples : 0,
+                               options.seed + static_cast<std::uint64_t>(number)},
+                              context);
+  };
   const QuotientTriangulation initial = start.mesh;
   const Criteria initial_criteria = criteria;
-  for (int attempt = 0;; ++attempt) {
-    const bool sample =
-        !options.plain && (attempt > 0 || options.min_angle_deg >= kSamplingAngleDeg);
-    DelaunayEditor editor(start.mesh);
-    Refiner refiner(editor, criteria,
-                    {center, !options.plain, sample ? kSamples : 0,
-                     options.seed + static_cast<std::uint64_t>(attempt)},
-                    context);
-    if (auto ok = refiner.run(); !ok) {
-      const bool cascaded = ok.error().code == ErrorCode::kBoundUnreachable;
-      if (!cascaded || options.plain || attempt + 1 == kAttempts) {
-        return tl::unexpected<Error>(ok.error());
-      }
-      start.mesh = initial;
-      criteria = initial_criteria;
-      continue;
-    }
-    start.mesh.compact();
-    Coarsener coarsener(editor, criteria, refiner.surgery(), context);
-    if (!options.plain) {
-      if (auto ok = coarsener.run(); !ok) return tl::unexpected<Error>(ok.error());
-      start.mesh.compact();
-    }
-    return WorkDone{refiner.counters(), coarsener.counters(), editor.counters()};
+  int number = 0;
+  auto best = attempt(start.mesh, criteria, number++);
+  while (!best) {
+    const bool cascaded = best.error().code == ErrorCode::kBoundUnreachable;
+    if (!cascaded || options.plain || number == kAttempts) return best;
+    start.mesh = initial;
+    criteria = initial_criteria;
+    best = attempt(start.mesh, criteria, number++);
   }
+  const bool small = start.mesh.triangle_count() <= kSmallCell;
+  for (int more = 0; small && !options.plain && more < kFurtherStarts; ++more) {
+    QuotientTriangulation mesh = initial;
+    Criteria own = initial_criteria;
+    auto work = attempt(mesh, own, number++);
+    if (!work && work.error().code != ErrorCode::kBoundUnreachable) return work;
+    if (!work || mesh.triangle_count() >= start.mesh.triangle_count()) continue;
+    start.mesh = std::move(mesh);
+    criteria = std::move(own);
+    best = std::move(work);
+  }
+  return best;
 }
 
 void record(const SymmetricPslg& symmetric, Statistics::Symmetry& out) {
@@ -171,7 +198,7 @@ Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
   if (auto ok = check_area_budget(*start, criteria, context); !ok) {
     return tl::unexpected<Error>(ok.error());
   }
-  const auto work = refine_and_coarsen(*start, criteria, options, symmetric->center, context);
+  const auto work = refine_from_starts(*start, criteria, options, symmetric->center, context);
   if (!work) return tl::unexpected<Error>(work.error());
   record(*work, start->mesh, symmetric->orbit_points.size(), stats.refinement);
   stats.timings_ms.refine = watch.lap();
