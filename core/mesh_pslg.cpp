@@ -1,5 +1,6 @@
 #include "core/mesh_pslg.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <utility>
@@ -24,10 +25,11 @@ namespace {
 constexpr int kAttempts = 6;
 constexpr int kSamples = 24;
 constexpr double kSamplingAngleDeg = 38;  // below, samples are taken from the second attempt on
-// Small cells are made several times with other samples and the one with the fewest triangles is
-// kept: a few milliseconds each, and greedy coarsening ends in different places.
-constexpr std::size_t kSmallCell = 1000;
-constexpr int kFurtherStarts = 5;
+// Small cells are made several times, with other samples and for somewhat higher bounds (a coarse
+// model may come out smaller for them), and the one with the fewest triangles is kept: a few
+// milliseconds each, and greedy coarsening ends in different places.
+constexpr std::size_t kSmallCell = 500;
+constexpr double kFurtherStartsDeg[] = {0, 0, 0, 1, 2, 3};
 
 class Stopwatch {
  public:
@@ -111,6 +113,13 @@ Result<WorkDone> refine_and_coarsen(QuotientTriangulation& mesh,
   return WorkDone{refiner.counters(), coarsener.counters(), editor.counters()};
 }
 
+bool has_bad_triangle(const QuotientTriangulation& mesh, const Criteria& criteria) {
+  for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {
+    if (mesh.alive(t) && criteria.is_bad(mesh, t)) return true;
+  }
+  return false;
+}
+
 // From the initial triangulation again, with other samples, where a run cascades; and a few times
 // more where the cell is small, keeping the best.
 Result<WorkDone> refine_from_starts(InitialTriangulation& start,
@@ -137,15 +146,21 @@ Result<WorkDone> refine_from_starts(InitialTriangulation& start,
     criteria = initial_criteria;
     best = attempt(start.mesh, criteria, number++);
   }
-  const bool small = start.mesh.triangle_count() <= kSmallCell;
-  for (int more = 0; small && !options.plain && more < kFurtherStarts; ++more) {
+  if (options.plain || start.mesh.triangle_count() > kSmallCell) return best;
+  for (const double higher : kFurtherStartsDeg) {
+    MeshOptions tighter = options;
+    tighter.min_angle_deg = std::min(options.min_angle_deg + higher, kMaxMinAngleDeg);
     QuotientTriangulation mesh = initial;
-    Criteria own = initial_criteria;
+    Criteria own(mesh, start.subdomains, tighter);
     auto work = attempt(mesh, own, number++);
     if (!work && work.error().code != ErrorCode::kBoundUnreachable) return work;
     if (!work || mesh.triangle_count() >= start.mesh.triangle_count()) continue;
+    // What a higher bound excuses, the one asked for may not.
+    Criteria asked = initial_criteria;
+    asked.adopt_segment_ends(own);
+    if (has_bad_triangle(mesh, asked)) continue;
     start.mesh = std::move(mesh);
-    criteria = std::move(own);
+    criteria = std::move(asked);
     best = std::move(work);
   }
   return best;
