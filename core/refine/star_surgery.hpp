@@ -40,9 +40,6 @@ class StarSurgery {
 
   [[nodiscard]] FeasibleRegion& region() { return region_; }
 
-  // More triangles than this at one vertex cannot all keep the angle bound.
-  [[nodiscard]] std::size_t most_edges() const { return region_.most_edges(); }
-
  private:
   struct SegmentEnds {
     Corner a, b;  // ends of the chain of subsegments, in the frame
