@@ -4,10 +4,10 @@
 # What the build looks for with find_package; the tests are part of it, hence GoogleTest.
 build_packages=(
   cmake g++ ninja-build pkg-config
-  libcgal-dev libexpected-dev libnanoflann-dev
+  libcgal-dev libexpected-dev
   libpugixml-dev nlohmann-json3-dev zlib1g-dev
   libboost-dev libcli11-dev libcpp-httplib-dev libspdlog-dev libsqlitecpp-dev libssl-dev
-  libgtest-dev librapidcheck-dev
+  libgtest-dev
 )
 # What tests run.
 test_packages=(curl gmsh python3 python3-numpy python3-scipy python3-yaml)

@@ -16,7 +16,7 @@ constexpr std::size_t kVertexVisits = 16'000;
 constexpr int kMendingMoves = 4;
 constexpr std::size_t kMostBadToMend = 3;
 // Neighbours up to this many times as far (squared) as the nearest are tried for a merge: the
-// others hardly ever have room (measured: a third of the time for nothing).
+// others hardly ever have room (measured: a tenth of the time for nothing).
 constexpr double kNearNeighbour2 = 1.5;
 // A star this much too large for the area bound may still lose its vertex: mending moves others.
 constexpr double kRoomSlack = 1.2;
