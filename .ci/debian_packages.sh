@@ -4,7 +4,7 @@
 # What the build looks for with find_package; the tests are part of it, hence GoogleTest.
 build_packages=(
   cmake g++ ninja-build pkg-config
-  libcgal-dev libexpected-dev
+  libcgal-dev libexpected-dev libtet1.5-dev
   libpugixml-dev nlohmann-json3-dev zlib1g-dev
   libboost-dev libcli11-dev libcpp-httplib-dev libspdlog-dev libsqlitecpp-dev libssl-dev
   libgtest-dev

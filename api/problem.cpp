@@ -8,7 +8,7 @@ namespace {
 
 // 400: the request is malformed; 422: well-formed, but the model can't be meshed as asked.
 // Exit codes: 1 meshing failed, 2 wrong usage, 3 the model is not acceptable, 4 a limit.
-constexpr std::array<ProblemRow, 33> kTable{{
+constexpr std::array<ProblemRow, 39> kTable{{
     {ErrorCode::kEmptyFile, 400, 3, "The model is empty"},
     {ErrorCode::kJsonSyntax, 400, 3, "Not well-formed JSON"},
     {ErrorCode::kJsonTooDeep, 400, 3, "JSON is nested too deeply"},
@@ -35,11 +35,17 @@ constexpr std::array<ProblemRow, 33> kTable{{
     {ErrorCode::kConflictingSeeds, 422, 3, "Seeds contradict each other"},
     {ErrorCode::kNotSymmetric, 422, 3, "The model is not symmetric as asked"},
     {ErrorCode::kUnsupportedModel, 422, 3, "Models of this kind are not supported"},
+    {ErrorCode::kDegenerateFacet, 422, 3, "A facet has no area"},
+    {ErrorCode::kNonplanarFacet, 422, 3, "A facet is not planar"},
+    {ErrorCode::kNotWatertight, 422, 3, "The surface is not closed"},
+    {ErrorCode::kAmbiguousSymmetry, 422, 3, "The symmetry is ambiguous"},
+    {ErrorCode::kTetrahedralizationFailed, 422, 1, "The model could not be tetrahedralized"},
     {ErrorCode::kBoundUnreachable, 422, 1, "A quality bound cannot be reached"},
     {ErrorCode::kElementLimit, 422, 4, "The mesh would have too many elements"},
     {ErrorCode::kTimeLimit, 422, 4, "The time limit was reached"},
     {ErrorCode::kMemoryLimit, 422, 4, "The memory limit was reached"},
     {ErrorCode::kCancelled, 409, 1, "Cancelled"},
+    {ErrorCode::kWorkerCrashed, 500, 1, "The mesher crashed on this model"},
     {ErrorCode::kWriteFailed, 500, 1, "The output could not be written"},
     {ErrorCode::kInternal, 500, 1, "Internal error"},
 }};

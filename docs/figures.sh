@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
-# Writes the README's pictures, docs/cell.svg and docs/full.svg, and prints the rows of its table of
+# Writes the README's pictures, docs/cell.svg, full.svg and solid.svg, and prints the rows of its table of
 # counts and angles.  docs/figures.sh [PROGRAM], by default build/release/symcell.
 set -euo pipefail
 program=$(readlink -f "${1-$(dirname "${BASH_SOURCE[0]}")/../build/release/symcell}")
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 "$program" mesh examples/motor.json --min-angle 33 --cell cell.svg --full full.svg --quiet
+solid=$(mktemp -d)
+trap 'rm -r "$solid"' EXIT
+"$program" mesh examples/gear.stl --cell "$solid/cell.vtu" --full "$solid/full.vtu" --quiet
+./solid_picture.py picture "$solid/cell.vtu" solid.svg --full "$solid/full.vtu"
 
 # row TEXT PART MODEL OPTIONS...: one row of the table; PART is cell or full.
 row() {

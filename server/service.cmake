@@ -52,6 +52,12 @@ add_library(
   jobs/local_engine.cpp
   jobs/retention.cpp
   jobs/sqlite_job_store.cpp
+  worker/protocol.cpp
+  worker/worker_engine.cpp
+  worker/worker_faults.cpp
+  worker/worker_main.cpp
+  worker/worker_pool.cpp
+  worker/worker_process.cpp
   ${CMAKE_CURRENT_BINARY_DIR}/pages.cpp)
 if(SYMCELL_SANITIZE MATCHES "thread" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # Boost.Asio uses fences, which the sanitizer does not model; g++ warns wherever one is inlined.
@@ -60,7 +66,7 @@ if(SYMCELL_SANITIZE MATCHES "thread" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 target_link_libraries(
   symcell_service
-  PUBLIC symcell_api symcell_numerics Boost::headers Threads::Threads
+  PUBLIC symcell_api symcell_process symcell_numerics Boost::headers Threads::Threads
   PRIVATE symcell_warnings PkgConfig::HTTPLIB OpenSSL::Crypto spdlog::spdlog SQLiteCpp ZLIB::ZLIB)
 
 include(GNUInstallDirs)

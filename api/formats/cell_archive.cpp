@@ -74,6 +74,20 @@ void apply(const Header& h, SymmetryCellMesh& m) {
   std::copy(h.real.begin() + 6, h.real.end(), m.frame.begin());
 }
 
+Result<Header> read_header(std::string_view bytes) {
+  if (bytes.substr(0, kMagic.size()) != kMagic) {
+    return fail(ErrorCode::kUnknownFormat, "not a symmetry cell archive of version 1");
+  }
+  if (bytes.size() < kHeaderBytes + 4) {
+    return fail(ErrorCode::kTruncated, "the archive ends within its header");
+  }
+  Header header;
+  const char* at = bytes.data() + kMagic.size();
+  std::memcpy(&header.whole, at, sizeof header.whole);
+  std::memcpy(&header.real, at + sizeof header.whole, sizeof header.real);
+  return header;
+}
+
 bool all_below(const std::vector<std::int32_t>& indices,
                std::size_t limit,
                std::int32_t least = 0) {
@@ -135,22 +149,20 @@ Result<void> write_cell_archive(const SymmetryCellMesh& cell, const Sink& sink) 
   return out.finish();
 }
 
+Result<std::int32_t> cell_archive_dimension(std::string_view bytes) {
+  const Result<Header> header = read_header(bytes);
+  if (!header) return tl::unexpected(header.error());
+  return header->whole[0];
+}
+
 Result<SymmetryCellMesh> read_cell_archive(std::string_view bytes) {
-  if (bytes.substr(0, kMagic.size()) != kMagic) {
-    return fail(ErrorCode::kUnknownFormat, "not a symmetry cell archive of version 1");
-  }
-  if (bytes.size() < kHeaderBytes + 4) {
-    return fail(ErrorCode::kTruncated, "the archive ends within its header");
-  }
-  Header header;
-  const char* at = bytes.data() + kMagic.size();
-  std::memcpy(&header.whole, at, sizeof header.whole);
-  std::memcpy(&header.real, at += sizeof header.whole, sizeof header.real);
+  const Result<Header> header = read_header(bytes);
+  if (!header) return tl::unexpected(header.error());
   std::array<std::uint64_t, kArrays> sizes{};
-  std::memcpy(&sizes, at += sizeof header.real, sizeof sizes);
+  std::memcpy(&sizes, bytes.data() + kHeaderBytes - sizeof sizes, sizeof sizes);
   // The sizes must make up the file exactly; no size is trusted before that.
   SymmetryCellMesh mesh;
-  apply(header, mesh);
+  apply(*header, mesh);
   std::uint64_t expected = kHeaderBytes + 4;
   std::size_t i = 0;
   bool fits = true;
@@ -167,7 +179,7 @@ Result<SymmetryCellMesh> read_cell_archive(std::string_view bytes) {
   std::memcpy(&stored, bytes.data() + bytes.size() - 4, 4);
   const uLong crc = crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size() - 4);
   if (crc != stored) return fail(ErrorCode::kSyntax, "the archive's checksum does not match");
-  at = bytes.data() + kHeaderBytes;
+  const char* at = bytes.data() + kHeaderBytes;
   i = 0;
   each_array(mesh, [&](auto& array) {
     array.resize(static_cast<std::size_t>(sizes[i++]));

@@ -2,6 +2,7 @@
 // Not an interchange format; any version may change it, readers refuse versions they don't know.
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 #include "api/sink.hpp"
@@ -11,6 +12,8 @@
 namespace symcell {
 
 [[nodiscard]] Result<void> write_cell_archive(const SymmetryCellMesh& cell, const Sink& sink);
+// 2 or 3, from the header alone.  Errors: kTruncated, kUnknownFormat.
+[[nodiscard]] Result<std::int32_t> cell_archive_dimension(std::string_view bytes);
 // Errors: kTruncated, kUnknownFormat, kSyntax (checksum or index out of range).
 [[nodiscard]] Result<SymmetryCellMesh> read_cell_archive(std::string_view bytes);
 

@@ -13,14 +13,16 @@ struct FormatName {
   MeshFormat format;
   std::string_view name;
   std::string_view media_type;
+  std::int32_t dimension;  // of the meshes it shows; 0: any
 };
 
 // In the order of preference where a client accepts several alike.
-constexpr std::array<FormatName, 4> kFormats{{
-    {MeshFormat::kVtu, "vtu", "application/vnd.vtk.vtu+xml"},
-    {MeshFormat::kJson, "json", "application/json"},
-    {MeshFormat::kMsh, "msh", "model/x-gmsh"},
-    {MeshFormat::kSvg, "svg", "image/svg+xml"},
+constexpr std::array<FormatName, 5> kFormats{{
+    {MeshFormat::kVtu, "vtu", "application/vnd.vtk.vtu+xml", 0},
+    {MeshFormat::kJson, "json", "application/json", 0},
+    {MeshFormat::kMsh, "msh", "model/x-gmsh", 0},
+    {MeshFormat::kSvg, "svg", "image/svg+xml", 2},
+    {MeshFormat::kStl, "stl", "model/stl", 3},
 }};
 
 const FormatName& row(MeshFormat format) {
@@ -89,13 +91,22 @@ std::string_view mesh_format_media_type(MeshFormat format) {
   return row(format).media_type;
 }
 
-std::optional<MeshFormat> mesh_format_from_accept(std::string_view accept) {
+Result<void> check_mesh_format(MeshFormat format, std::int32_t dimension) {
+  const std::int32_t shown = row(format).dimension;
+  if (shown == 0 || shown == dimension) return {};
+  return fail(ErrorCode::kUnsupportedModel, shown == 2
+                                                ? "svg shows planar meshes only; take vtu or stl"
+                                                : "stl shows solids only; take vtu or svg");
+}
+
+std::optional<MeshFormat> mesh_format_from_accept(std::string_view accept, std::int32_t dimension) {
   if (trim(accept).empty()) return MeshFormat::kVtu;
   std::array<int, kFormats.size()> closest{};
   std::array<double, kFormats.size()> quality{};
   while (!accept.empty()) {
     const Range range = parse_range(next_part(accept, ','));
     for (std::size_t i = 0; i < kFormats.size(); ++i) {
+      if (kFormats[i].dimension != 0 && kFormats[i].dimension != dimension) continue;
       const int close = closeness(range.type, kFormats[i].media_type);
       if (close <= closest[i]) continue;
       closest[i] = close;

@@ -20,4 +20,9 @@ void write_msh(MeshStream& mesh, ByteWriter& out);
 // the full mesh as rotated copies of the cell, which is picked out in colour.
 void write_svg(const MeshStream& mesh, ByteWriter& out);
 
+// STL of a solid's boundary, oriented outwards: of the cell with both bounds, of the full mesh
+// without them. Corners only: quadratic elements have straight sides.
+// Errors: kTooLarge (a full mesh with more triangles than the format can count).
+[[nodiscard]] Result<void> write_stl(const MeshStream& mesh, bool ascii, ByteWriter& out);
+
 }  // namespace symcell::internal

@@ -55,6 +55,8 @@ class MeshStream {
   // Asked before each sector: true ends all loops (the receiver is gone).
   void stop_when(std::function<bool()> stopped) { stopped_ = std::move(stopped); }
 
+  [[nodiscard]] bool stopped() const { return stopped_(); }
+
   // The nodes of one sector: table[i] is the id of cell node i there.
   [[nodiscard]] std::span<const std::int64_t> node_table(std::int32_t sector);
 

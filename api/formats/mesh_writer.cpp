@@ -9,9 +9,8 @@ Result<void> write_mesh(const SymmetryCellMesh& cell,
                         MeshFormat format,
                         const WriteOptions& options,
                         const Sink& sink) {
-  if (format == MeshFormat::kSvg && cell.dimension != 2) {
-    return fail(ErrorCode::kUnsupportedModel, "svg shows planar meshes only; take vtu");
-  }
+  auto done = check_mesh_format(format, cell.dimension);
+  if (!done) return done;
   ByteWriter out(sink);
   MeshStream mesh(cell, part);
   mesh.stop_when([&out] { return !out.ok(); });
@@ -20,7 +19,9 @@ Result<void> write_mesh(const SymmetryCellMesh& cell,
     case MeshFormat::kVtu: internal::write_vtu(mesh, options.vtu_encoding, out); break;
     case MeshFormat::kMsh: internal::write_msh(mesh, out); break;
     case MeshFormat::kSvg: internal::write_svg(mesh, out); break;
+    case MeshFormat::kStl: done = internal::write_stl(mesh, options.stl_ascii, out); break;
   }
+  if (!done) return done;
   return out.finish();
 }
 

@@ -1,17 +1,25 @@
 #include "api/formats/model_reader.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <cstring>
 #include <string>
+#include <utility>
 
 #include "api/formats/gzip.hpp"
+#include "api/formats/obj.hpp"
+#include "api/formats/off.hpp"
+#include "api/formats/plc_json.hpp"
+#include "api/formats/ply.hpp"
 #include "api/formats/poly.hpp"
 #include "api/formats/pslg_json.hpp"
+#include "api/formats/stl.hpp"
+#include "api/formats/tetgen_poly.hpp"
 
 namespace symcell {
 namespace {
+
+constexpr const char* kKnown =
+    "send JSON (a planar or a solid model), .poly, .smesh, STL, OFF, PLY or OBJ";
 
 std::string lower(std::string_view text) {
   std::string result(text);
@@ -25,85 +33,85 @@ std::string_view without_leading_blank(std::string_view bytes) {
   return begin == std::string_view::npos ? std::string_view() : bytes.substr(begin);
 }
 
-// A binary STL says in bytes 80-83 how many triangles of 50 bytes follow.
-bool is_binary_stl(std::string_view bytes) {
-  if (bytes.size() < 84) return false;
-  std::uint32_t count = 0;
-  std::memcpy(&count, bytes.data() + 80, sizeof count);
-  return bytes.size() == 84 + std::uint64_t{50} * count;
-}
-
-// What else a file can be that a user may send; nullptr: nothing that is known.
-const char* solid_format(std::string_view bytes, std::string_view text) {
-  if (is_binary_stl(bytes)) return "a binary STL file";
+// Formats whose first bytes are plain: they count whatever a name says.
+std::optional<ModelFormat> plain_format(std::string_view bytes, std::string_view text) {
+  if (text.starts_with('{')) {
+    return json_model_kind(bytes) == ModelKind::kPlc ? ModelFormat::kPlcJson
+                                                     : ModelFormat::kPslgJson;
+  }
   const std::string head = lower(text.substr(0, 512));
-  if (head.starts_with("solid") && head.find("facet") != std::string::npos) return "an STL file";
-  if (head.starts_with("off\n") || head.starts_with("off\r") || head.starts_with("off ")) {
-    return "an OFF file";
+  if (head.starts_with("ply\n") || head.starts_with("ply\r")) return ModelFormat::kPly;
+  if (head.starts_with("solid") && head.find("facet") != std::string::npos) {
+    return ModelFormat::kStl;
   }
-  if (head.starts_with("ply\n") || head.starts_with("ply\r")) return "a PLY file";
-  if (head.starts_with("v ") || head.find("\nv ") != std::string::npos) return "an OBJ file";
-  if (head.starts_with("iso-10303")) return "a STEP file";
-  return nullptr;
+  if (is_off_keyword(text.substr(0, text.find_first_of(" \t\r\n")))) return ModelFormat::kOff;
+  if (looks_like_binary_stl(bytes)) return ModelFormat::kStl;
+  return std::nullopt;
 }
 
-tl::unexpected<Error> unknown_format(std::string_view bytes, std::string_view text) {
-  if (const char* name = solid_format(bytes, text)) {
-    return fail(
-        ErrorCode::kUnsupportedModel,
-        std::string("this is ") + name +
-            ", a solid model; only planar models (PSLG JSON or Triangle .poly) are meshed so "
-            "far, solids come later");
-  }
-  const std::string_view head = text.substr(0, 512);
-  if (head.starts_with('<')) {
-    return fail(ErrorCode::kUnknownFormat,
-                "this is a web page or other XML, not a model; send PSLG JSON or a Triangle .poly");
-  }
-  return fail(ErrorCode::kUnknownFormat,
-              "the format is not known from the first bytes; send PSLG JSON or a Triangle .poly");
-}
-
-std::optional<ModelFormat> guess_format(std::string_view bytes, std::string_view text) {
-  if (text.starts_with('{') || text.starts_with('[')) return ModelFormat::kPslgJson;
-  if (is_binary_stl(bytes)) return std::nullopt;
-  const auto first = static_cast<unsigned char>(text.front());
-  const std::string_view head = text.substr(0, 512);
+// From the content alone, where nothing is plain and no name helps.
+std::optional<ModelFormat> guessed_format(std::string_view text) {
+  if (text.starts_with('[')) return ModelFormat::kPslgJson;
+  const std::string head = lower(text.substr(0, 512));
+  if (head.starts_with("solid")) return ModelFormat::kStl;
   const bool printable = std::ranges::all_of(head, [](char c) {
     const auto u = static_cast<unsigned char>(c);
     return u >= ' ' || u == '\t' || u == '\n' || u == '\r';
   });
-  if (printable && (first == '#' || std::isdigit(first) != 0)) {
-    // An OBJ file, too, may begin with a comment.
-    return solid_format(bytes, text) == nullptr ? std::optional(ModelFormat::kPoly) : std::nullopt;
-  }
+  if (!printable) return std::nullopt;
+  // An OBJ file, too, may begin with a comment.
+  if (head.starts_with("v ") || head.find("\nv ") != std::string::npos) return ModelFormat::kObj;
+  const auto first = static_cast<unsigned char>(text.front());
+  if (first == '#' || std::isdigit(first) != 0) return ModelFormat::kPoly;
   return std::nullopt;
+}
+
+tl::unexpected<Error> unknown_format(std::string_view text) {
+  const std::string head = lower(text.substr(0, 16));
+  if (head.starts_with("iso-10303")) {
+    return fail(ErrorCode::kUnsupportedModel,
+                "this is a STEP file; export the part as STL from the CAD program");
+  }
+  if (head.starts_with("pk\3\4")) {
+    return fail(ErrorCode::kUnknownFormat,
+                "this is a ZIP archive (a 3MF file is one, too); unpack it, or export as STL");
+  }
+  const char* what = head.starts_with('<') ? "this is a web page or other XML, not a model; "
+                                           : "the format is not known from the first bytes; ";
+  return fail(ErrorCode::kUnknownFormat, std::string(what) + kKnown);
+}
+
+template <class Read>
+Result<Model> widened(Result<Read> model) {
+  if (!model) return tl::unexpected(model.error());
+  return Model(std::move(*model));
+}
+
+Result<Model> read_as(ModelFormat format, std::string_view bytes) {
+  switch (format) {
+    case ModelFormat::kPslgJson: return widened(read_pslg_json(bytes));
+    case ModelFormat::kPlcJson: return widened(read_plc_json(bytes));
+    case ModelFormat::kPoly: return widened(read_poly(bytes));
+    case ModelFormat::kTetgenPoly: return widened(read_tetgen(bytes, TetgenForm::kPoly));
+    case ModelFormat::kSmesh: return widened(read_tetgen(bytes, TetgenForm::kSmesh));
+    case ModelFormat::kStl: return widened(read_stl(bytes));
+    case ModelFormat::kOff: return widened(read_off(bytes));
+    case ModelFormat::kPly: return widened(read_ply(bytes));
+    case ModelFormat::kObj: return widened(read_obj(bytes));
+  }
+  return fail(ErrorCode::kUnknownFormat, kKnown);
 }
 
 }  // namespace
 
-std::optional<ModelFormat> model_format_from_name(std::string_view file_name) {
-  std::string name = lower(file_name);
-  if (name.ends_with(".gz")) name.resize(name.size() - 3);
-  if (name.ends_with(".json")) return ModelFormat::kPslgJson;
-  if (name.ends_with(".poly")) return ModelFormat::kPoly;
-  return std::nullopt;
-}
-
-std::optional<ModelFormat> model_format_from_media_type(std::string_view media_type) {
-  std::string type = lower(media_type.substr(0, media_type.find(';')));
-  while (!type.empty() && type.back() == ' ') type.pop_back();
-  if (type == "application/json" || type.ends_with("+json")) return ModelFormat::kPslgJson;
-  if (type == "model/x-triangle-poly" || type == "text/x-poly") return ModelFormat::kPoly;
-  return std::nullopt;
-}
-
-Result<Pslg> read_model(std::string_view bytes, std::optional<ModelFormat> format) {
+Result<Model> read_model(std::string_view bytes,
+                         std::optional<ModelFormat> format,
+                         ModelFormat* recognised) {
   if (is_gzip(bytes)) {
     const Result<std::string> text = gunzip(bytes, kMaxModelBytes);
     if (!text) return tl::unexpected(text.error());
     // Packed twice is no model: the reader below says so.
-    if (!is_gzip(*text)) return read_model(*text, format);
+    if (!is_gzip(*text)) return read_model(*text, format, recognised);
   }
   if (bytes.size() > kMaxModelBytes) {
     return fail(ErrorCode::kTooLarge, "the model has " + std::to_string(bytes.size()) +
@@ -115,18 +123,25 @@ Result<Pslg> read_model(std::string_view bytes, std::optional<ModelFormat> forma
     return fail(ErrorCode::kEmptyFile, "the model is empty (" + std::to_string(bytes.size()) +
                                            " bytes); was the file written completely?");
   }
-  const std::optional<ModelFormat> guess = guess_format(bytes, text);
-  // A name may be wrong: a solid named .poly is told as what it is.
-  if (!guess && (!format || solid_format(bytes, text) != nullptr)) {
-    return unknown_format(bytes, text);
+  if (text.starts_with('<')) return unknown_format(text);
+  std::optional<ModelFormat> found = plain_format(bytes, text);
+  if (!found) found = format;
+  if (!found) found = guessed_format(text);
+  if (!found) return unknown_format(text);
+  const bool poly = *found == ModelFormat::kPoly || *found == ModelFormat::kTetgenPoly;
+  if (const auto dimension = poly ? poly_dimension(bytes) : std::nullopt) {
+    found = *dimension == 3 ? ModelFormat::kTetgenPoly : ModelFormat::kPoly;
   }
-  // An opening brace is JSON whatever the name says.
-  if (text.starts_with('{')) format = ModelFormat::kPslgJson;
-  switch (format.value_or(guess.value_or(ModelFormat::kPslgJson))) {
-    case ModelFormat::kPslgJson: return read_pslg_json(bytes);
-    case ModelFormat::kPoly: return read_poly(bytes);
+  auto model = read_as(*found, bytes);
+  // Nothing but the sense they make tells TetGen's two forms apart.
+  if (!model && !format && *found == ModelFormat::kTetgenPoly) {
+    if (auto other = read_as(ModelFormat::kSmesh, bytes)) {
+      found = ModelFormat::kSmesh;
+      model = std::move(other);
+    }
   }
-  return unknown_format(bytes, text);
+  if (recognised != nullptr) *recognised = *found;
+  return model;
 }
 
 }  // namespace symcell

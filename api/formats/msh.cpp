@@ -2,7 +2,7 @@
 // lower bound 1, higher bound 2, then one a boundary marker; regions from 1. Node and element tags
 // are the ids of the other formats plus 1.
 #include <algorithm>
-#include <map>
+#include <array>
 #include <numbers>
 #include <string>
 
@@ -24,6 +24,9 @@ ElementTypes gmsh_types(const SymmetryCellMesh& cell) {
   if (cell.dimension == 2) return cell.order == 1 ? ElementTypes{1, 2} : ElementTypes{8, 9};
   return cell.order == 1 ? ElementTypes{2, 4} : ElementTypes{9, 11};
 }
+
+// Gmsh's tetrahedron of 10 nodes has the last two mid-side nodes the other way round than VTK's.
+constexpr std::array<std::size_t, 10> kGmshOrder{0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 
 // Positions in a sequence of things, grouped by a label; ascending labels, order kept in a group.
 struct Groups {
@@ -189,9 +192,10 @@ class MshWriter {
   // The tags run on over all blocks.
   void write_element(std::span<const std::int32_t> nodes, std::span<const std::int64_t> table) {
     out_.integer(next_tag_++);
-    for (const std::int32_t i : nodes) {
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const std::int32_t node = nodes[nodes.size() == kGmshOrder.size() ? kGmshOrder[i] : i];
       out_.character(' ');
-      out_.integer(table[static_cast<std::size_t>(i)] + 1);
+      out_.integer(table[static_cast<std::size_t>(node)] + 1);
     }
     out_.character('\n');
   }
@@ -267,7 +271,7 @@ class MshWriter {
     out_.text("$Periodic\n1\n");
     line(dimension_ - 1, kHigherTag, kLowerTag);
     const RotationTable& rotations = mesh_.view().rotations();
-    const Point2 turned = rotations.rotate({1, 0}, cell_.fold > 1 ? 1 : 0);
+    const Point2 turned = rotations.rotate(Point2{1, 0}, cell_.fold > 1 ? 1 : 0);
     const double c = turned.x;
     const double s = turned.y;
     // Rodrigues: R = c I + (1 - c) u u^T + s [u]x, and the translation o - R o.

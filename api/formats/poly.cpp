@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "api/formats/text_lines.hpp"
 #include "api/formats/text_numbers.hpp"
 #include "api/printable.hpp"
 
@@ -16,44 +17,6 @@ struct Line {
   static constexpr std::size_t kMostTokens = 8;
   std::array<std::string_view, kMostTokens> tokens;
   std::size_t count = 0;
-};
-
-// Lines that hold something, without comments.
-class LineReader {
- public:
-  explicit LineReader(std::string_view bytes) : rest_(bytes) {}
-
-  // False at the end of the file.
-  bool next(Line& line) {
-    line.count = 0;
-    while (!rest_.empty() && line.count == 0) {
-      const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-      std::string_view text = rest_.substr(0, end);
-      rest_.remove_prefix(std::min(end + 1, rest_.size()));
-      ++number_;
-      text = text.substr(0, text.find('#'));
-      split(text, line);
-    }
-    return line.count > 0;
-  }
-
-  [[nodiscard]] std::size_t number() const { return number_; }
-  [[nodiscard]] std::size_t bytes_left() const { return rest_.size(); }
-
- private:
-  static void split(std::string_view text, Line& line) {
-    constexpr std::string_view kBlank = " \t\r\v\f,";
-    while (line.count < Line::kMostTokens) {
-      const std::size_t begin = text.find_first_not_of(kBlank);
-      if (begin == std::string_view::npos) return;
-      const std::size_t end = std::min(text.find_first_of(kBlank, begin), text.size());
-      line.tokens[line.count++] = text.substr(begin, end - begin);
-      text.remove_prefix(end);
-    }
-  }
-
-  std::string_view rest_;
-  std::size_t number_ = 0;
 };
 
 class PolyReader {
@@ -74,7 +37,16 @@ class PolyReader {
   }
 
  private:
-  bool next_line() { return lines_.next(line_); }
+  bool next_line() {
+    line_.count = 0;
+    if (!lines_.next_line()) return false;
+    while (line_.count < Line::kMostTokens) {
+      const std::string_view token = lines_.next_token();
+      if (token.empty()) break;
+      line_.tokens[line_.count++] = token;
+    }
+    return true;
+  }
 
   tl::unexpected<Error> complain(ErrorCode code,
                                  const std::string& what,
@@ -197,7 +169,7 @@ class PolyReader {
     }
     if (line_.count > 1 && line_.tokens[1] == "3") {
       return complain(ErrorCode::kUnsupportedModel,
-                      "a solid model (dimension 3); only planar models are meshed so far");
+                      "a solid model (dimension 3) where a planar one was expected");
     }
     if (line_.count > 1 && line_.tokens[1] != "2") {
       return complain(ErrorCode::kSyntax,
@@ -270,7 +242,7 @@ class PolyReader {
     return {};
   }
 
-  LineReader lines_;
+  TextLines lines_;
   Line line_;
   std::int64_t section_first_ = 1;  // number of the first entry of the section being read
   std::int64_t first_vertex_ = 1;

@@ -66,7 +66,7 @@ class Picture {
   [[nodiscard]] Point2 local(std::size_t node) const {
     const OrbitVertex v = mesh_.cell().nodes[node];
     const Point3& p = mesh_.cell().orbit_points[static_cast<std::size_t>(v.orbit)];
-    return mesh_.view().rotations().rotate({p.x, p.y}, v.exponent);
+    return mesh_.view().rotations().rotate(Point2{p.x, p.y}, v.exponent);
   }
 
   const MeshStream& mesh_;

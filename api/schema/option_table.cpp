@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 
 #include "api/printable.hpp"
@@ -12,6 +13,9 @@ namespace symcell::internal {
 namespace {
 
 using Kind = OptionValue::Kind;
+
+constexpr double kMostCoordinate = 1e60;  // as for the vertices of a model
+constexpr unsigned kMegabyteBits = 20;
 
 tl::unexpected<Error> refuse(ErrorCode code,
                              const OptionInfo& info,
@@ -116,20 +120,15 @@ Result<void> set_fold(const OptionInfo& info, const OptionValue& value, MeshOpti
   return {};
 }
 
-Result<void> set_ignore_markers(const OptionInfo& info,
-                                const OptionValue& value,
-                                MeshOptions& options) {
-  const std::optional<bool> flag = as_bool(value);
-  if (!flag) return refuse(ErrorCode::kBadOption, info, value, "true or false");
-  options.ignore_markers = *flag;
-  return {};
+bool all_in_range(const std::vector<double>& numbers) {
+  return std::ranges::all_of(numbers, [](double c) { return std::abs(c) <= kMostCoordinate; });
 }
 
 Result<void> set_center(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
   const auto numbers = as_numbers(value);
   const bool planar =
       numbers && (numbers->size() == 2 || (numbers->size() == 3 && (*numbers)[2] == 0));
-  if (!planar || !std::ranges::all_of(*numbers, [](double c) { return std::abs(c) <= 1e60; })) {
+  if (!planar || !all_in_range(*numbers)) {
     return refuse(ErrorCode::kBadAxis, info, value, "two finite coordinates x,y of the plane");
   }
   const Point2 center{(*numbers)[0], (*numbers)[1]};
@@ -141,13 +140,33 @@ Result<void> set_center(const OptionInfo& info, const OptionValue& value, MeshOp
   return {};
 }
 
-Result<void> set_axis_direction(const OptionInfo& info, const OptionValue& value, MeshOptions&) {
+// Two coordinates are a planar model's centre.
+Result<void> set_axis_origin(const OptionInfo& info,
+                             const OptionValue& value,
+                             MeshOptions& options) {
   const auto numbers = as_numbers(value);
-  const bool along_z = numbers && numbers->size() == 3 && (*numbers)[0] == 0 &&
-                       (*numbers)[1] == 0 && std::abs((*numbers)[2]) == 1;
-  if (along_z) return {};
-  return refuse(ErrorCode::kBadAxis, info, value,
-                "0,0,1 or left out for a planar model: its axis is normal to the plane");
+  if (numbers && numbers->size() == 2) return set_center(info, value, options);
+  if (!numbers || numbers->size() != 3 || !all_in_range(*numbers)) {
+    return refuse(ErrorCode::kBadAxis, info, value,
+                  "finite coordinates: x,y,z of a point of the axis");
+  }
+  options.axis_origin = Point3{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+  return {};
+}
+
+Result<void> set_axis_direction(const OptionInfo& info,
+                                const OptionValue& value,
+                                MeshOptions& options) {
+  const auto numbers = as_numbers(value);
+  const bool some =
+      numbers && numbers->size() == 3 && all_in_range(*numbers) &&
+      std::ranges::any_of(*numbers, [](double c) { return std::abs(c) >= 1 / kMostCoordinate; });
+  if (!some) {
+    return refuse(ErrorCode::kBadAxis, info, value,
+                  "a vector x,y,z of three finite numbers that are not all 0");
+  }
+  options.axis_direction = Point3{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+  return {};
 }
 
 Result<void> set_symmetry_tolerance(const OptionInfo& info,
@@ -166,6 +185,33 @@ Result<void> set_min_angle(const OptionInfo& info, const OptionValue& value, Mes
       in_range(info, value, 0, true, kMaxMinAngleDeg, "a number of degrees from 0 to 42");
   if (!number) return tl::unexpected(number.error());
   options.min_angle_deg = *number;
+  return {};
+}
+
+Result<void> set_radius_edge(const OptionInfo& info,
+                             const OptionValue& value,
+                             MeshOptions& options) {
+  const Result<double> number =
+      in_range(info, value, 1, true, 100, "a number from 1 to 100 (circumradius / shortest edge)");
+  if (!number) return tl::unexpected(number.error());
+  options.radius_edge = *number;
+  return {};
+}
+
+Result<void> set_min_dihedral(const OptionInfo& info,
+                              const OptionValue& value,
+                              MeshOptions& options) {
+  const Result<double> number =
+      in_range(info, value, 0, true, 70, "a number of degrees from 0 to 70");
+  if (!number) return tl::unexpected(number.error());
+  options.min_dihedral_deg = *number;
+  return {};
+}
+
+Result<void> set_flag(const OptionInfo& info, const OptionValue& value, bool& flag) {
+  const std::optional<bool> given = as_bool(value);
+  if (!given) return refuse(ErrorCode::kBadOption, info, value, "true or false");
+  flag = *given;
   return {};
 }
 
@@ -202,6 +248,22 @@ Result<void> set_time_limit(const OptionInfo& info,
   return {};
 }
 
+Result<void> set_memory_limit(const OptionInfo& info,
+                              const OptionValue& value,
+                              MeshOptions& options) {
+  // Below, not even the program itself would fit.
+  constexpr std::uint64_t kLeast = 64;
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 30U;
+  const std::optional<std::uint64_t> megabytes = as_whole(value);
+  if (!megabytes || *megabytes < kLeast || *megabytes > kMost) {
+    return refuse(ErrorCode::kBadOption, info, value,
+                  "a whole number of MB from " + std::to_string(kLeast) + " to " +
+                      std::to_string(kMost) + "; leave it out for no limit");
+  }
+  options.memory_limit_bytes = *megabytes << kMegabyteBits;
+  return {};
+}
+
 Result<void> set_seed(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
   const std::optional<std::uint64_t> seed = as_whole(value);
   if (!seed) {
@@ -211,98 +273,117 @@ Result<void> set_seed(const OptionInfo& info, const OptionValue& value, MeshOpti
   return {};
 }
 
-Result<void> set_plain(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
-  const std::optional<bool> flag = as_bool(value);
-  if (!flag) return refuse(ErrorCode::kBadOption, info, value, "true or false");
-  options.plain = *flag;
-  return {};
-}
-
-Result<void> refuse_solids_only(const OptionInfo& info, const OptionValue& value, MeshOptions&) {
-  if (value.kind == Kind::kBool && !value.boolean) return {};  // "delaunay": false asks for nothing
-  const std::string name(info.name);
-  return fail(ErrorCode::kBadOption,
-              name + " is for solid models; planar models take min_angle, max_area and max_edge",
-              {}, "/options/" + name);
-}
-
 using Json = nlohmann::ordered_json;
 
 Json bound_to_json(double bound) {
   return std::isfinite(bound) ? Json(bound) : Json(nullptr);
 }
 
-Json get_center(const MeshOptions& o) {
+Json point_to_json(const std::optional<Point3>& p) {
+  return p ? Json::array({p->x, p->y, p->z}) : Json(nullptr);
+}
+
+Json get_center(const MeshOptions& o, ModelKind) {
   return o.center ? Json::array({o.center->x, o.center->y}) : Json(nullptr);
 }
 
-Json get_nothing(const MeshOptions&) {
-  return nullptr;
+Json get_symmetry_tolerance(const MeshOptions& o, ModelKind kind) {
+  return o.symmetry_tolerance_rel.value_or(
+      kind == ModelKind::kSurface ? kSurfaceSymmetryToleranceRel : kExactSymmetryToleranceRel);
 }
+
+Json get_memory_limit(const MeshOptions& o, ModelKind) {
+  return o.memory_limit_bytes == 0 ? Json(nullptr) : Json(o.memory_limit_bytes >> kMegabyteBits);
+}
+
+// Options that are one member of MeshOptions, by the way they are checked.
+template <double MeshOptions::*Member>
+constexpr OptionRow bound_row(OptionInfo info) {
+  return {info,
+          [](const OptionInfo& i, const OptionValue& v, MeshOptions& o) {
+            return set_bound(i, v, o.*Member);
+          },
+          [](const MeshOptions& o, ModelKind) { return bound_to_json(o.*Member); }};
+}
+
+template <bool MeshOptions::*Member>
+constexpr OptionRow flag_row(OptionInfo info) {
+  return {info,
+          [](const OptionInfo& i, const OptionValue& v, MeshOptions& o) {
+            return set_flag(i, v, o.*Member);
+          },
+          [](const MeshOptions& o, ModelKind) { return Json(o.*Member); }};
+}
+
+template <auto Member>
+Json get_member(const MeshOptions& o, ModelKind) {
+  return o.*Member;
+}
+
+using enum OptionScope;
 
 constexpr auto kRows = std::to_array<OptionRow>({
     {{"fold", "auto|N", "auto",
-      "n-fold symmetry, 1 to 30000; 1: none; auto: the largest that the model has", false},
+      "n-fold symmetry, 1 to 30000; 1: none; auto: the largest that the model has", kAll},
      set_fold,
-     [](const MeshOptions& o) { return o.fold ? Json(*o.fold) : Json("auto"); }},
-    {{"ignore_markers", "", "", "markers and region attributes take no part in the symmetry",
-      false},
-     set_ignore_markers,
-     [](const MeshOptions& o) { return Json(o.ignore_markers); }},
-    {{"center", "X,Y", "detected", "centre of the symmetry, in model units", false},
+     [](const MeshOptions& o, ModelKind) { return o.fold ? Json(*o.fold) : Json("auto"); }},
+    flag_row<&MeshOptions::ignore_markers>(
+        {"ignore_markers", "", "", "markers and region attributes take no part in the symmetry",
+         kAll}),
+    {{"center", "X,Y", "detected", "planar: centre of the symmetry, in model units", kPlanar},
      set_center,
      get_center},
-    {{"axis_origin", "X,Y[,0]", "detected",
-      "a point of the axis; for planar models the same as center", false},
-     set_center,
-     get_nothing},
-    {{"axis_direction", "X,Y,Z", "0,0,1", "direction of the axis; planar models: 0,0,1", false},
+    {{"axis_origin", "X,Y,Z", "detected",
+      "solids: a point of the axis, in model units; planar: the same as center", kSolids},
+     set_axis_origin,
+     [](const MeshOptions& o, ModelKind) { return point_to_json(o.axis_origin); }},
+    {{"axis_direction", "X,Y,Z", "detected",
+      "solids: direction of the axis, of any length; planar: 0,0,1", kSolids},
      set_axis_direction,
-     get_nothing},
-    {{"symmetry_tolerance", "T", "1e-6",
-      "how far the model may be from symmetric, as a share of its diameter, above 0 to 0.1", false},
+     [](const MeshOptions& o, ModelKind) { return point_to_json(o.axis_direction); }},
+    {{"symmetry_tolerance", "T", "1e-6; STL, OFF, PLY, OBJ: 1e-3",
+      "how far the model may be from symmetric, as a share of its diameter, above 0 to 0.1", kAll},
      set_symmetry_tolerance,
-     [](const MeshOptions& o) { return Json(o.symmetry_tolerance_rel); }},
-    {{"min_angle", "DEG", "30", "smallest angle of a triangle in degrees, 0 to 42", false},
+     get_symmetry_tolerance},
+    {{"min_angle", "DEG", "30", "planar: smallest angle of a triangle in degrees, 0 to 42",
+      kPlanar},
      set_min_angle,
-     [](const MeshOptions& o) { return Json(o.min_angle_deg); }},
-    {{"max_area", "A", "", "largest area of a triangle, in model units squared", false},
-     [](const OptionInfo& i, const OptionValue& v, MeshOptions& o) {
-       return set_bound(i, v, o.max_area);
-     },
-     [](const MeshOptions& o) { return bound_to_json(o.max_area); }},
-    {{"radius_edge", "B", "", "solids only: largest circumradius / shortest edge", true},
-     refuse_solids_only,
-     get_nothing},
-    {{"min_dihedral", "DEG", "", "solids only: smallest dihedral angle in degrees", true},
-     refuse_solids_only,
-     get_nothing},
-    {{"max_volume", "V", "", "solids only: largest volume, in model units cubed", true},
-     refuse_solids_only,
-     get_nothing},
-    {{"max_edge", "L", "", "longest edge, in model units", false},
-     [](const OptionInfo& i, const OptionValue& v, MeshOptions& o) {
-       return set_bound(i, v, o.max_edge);
-     },
-     [](const MeshOptions& o) { return bound_to_json(o.max_edge); }},
-    {{"delaunay", "", "", "solids only: keep the mesh Delaunay, no improvement beyond it", true},
-     refuse_solids_only,
-     get_nothing},
-    {{"order", "1|2", "1", "1: linear elements; 2: quadratic, with mid-side nodes", false},
+     get_member<&MeshOptions::min_angle_deg>},
+    bound_row<&MeshOptions::max_area>({"max_area", "A", "",
+                                       "planar: largest area of a triangle, in model units squared",
+                                       kPlanar}),
+    {{"radius_edge", "B", "1.414", "solids: largest circumradius / shortest edge, 1 to 100",
+      kSolids},
+     set_radius_edge,
+     get_member<&MeshOptions::radius_edge>},
+    {{"min_dihedral", "DEG", "0",
+      "solids: smallest dihedral angle in degrees that the improvement aims at, 0 to 70", kSolids},
+     set_min_dihedral,
+     get_member<&MeshOptions::min_dihedral_deg>},
+    bound_row<&MeshOptions::max_volume>(
+        {"max_volume", "V", "", "solids: largest volume of an element, in model units cubed",
+         kSolids}),
+    bound_row<&MeshOptions::max_edge>({"max_edge", "L", "", "longest edge, in model units", kAll}),
+    flag_row<&MeshOptions::delaunay>(
+        {"delaunay", "", "", "solids: keep the mesh Delaunay, no improvement beyond it", kSolids}),
+    {{"order", "1|2", "1", "1: linear elements; 2: quadratic, with mid-side nodes", kAll},
      set_order,
-     [](const MeshOptions& o) { return Json(o.order); }},
-    {{"max_elements", "N", "50000000", "give up beyond this many elements of the cell", false},
+     get_member<&MeshOptions::order>},
+    {{"max_elements", "N", "50000000", "give up beyond this many elements of the cell", kAll},
      set_max_elements,
-     [](const MeshOptions& o) { return Json(o.max_elements); }},
-    {{"time_limit", "S", "", "give up after this many seconds", false},
+     get_member<&MeshOptions::max_elements>},
+    {{"time_limit", "S", "", "give up after this many seconds", kAll},
      set_time_limit,
-     [](const MeshOptions& o) { return bound_to_json(o.time_limit_s); }},
-    {{"seed", "N", "0", "seed of random choices; same input and options: same bytes", false},
+     [](const MeshOptions& o, ModelKind) { return bound_to_json(o.time_limit_s); }},
+    {{"memory_limit", "MB", "", "give up beyond this much memory, in units of 2^20 bytes", kAll},
+     set_memory_limit,
+     get_memory_limit},
+    {{"seed", "N", "0", "seed of random choices; same input and options: same bytes", kAll},
      set_seed,
-     [](const MeshOptions& o) { return Json(o.seed); }},
-    {{"plain", "", "", "plain Delaunay refinement only: no relocation, no coarsening", false},
-     set_plain,
-     [](const MeshOptions& o) { return Json(o.plain); }},
+     get_member<&MeshOptions::seed>},
+    flag_row<&MeshOptions::plain>(
+        {"plain", "", "",
+         "Delaunay refinement only: no relocation, coarsening or other improvement", kAll}),
 });
 
 }  // namespace

@@ -29,7 +29,7 @@ struct OptionRow {
   OptionInfo info;
   // Null has been dealt with: it leaves the default.  Errors: kBadOption, kBadFold, kBadAxis.
   Result<void> (*set)(const OptionInfo& info, const OptionValue& value, MeshOptions& options);
-  nlohmann::ordered_json (*get)(const MeshOptions& options);
+  nlohmann::ordered_json (*get)(const MeshOptions& options, ModelKind kind);
 };
 
 [[nodiscard]] std::span<const OptionRow> option_rows();

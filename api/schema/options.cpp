@@ -142,10 +142,12 @@ bool is_mesh_option(std::string_view name) {
   return find_row(name) != nullptr;
 }
 
-nlohmann::ordered_json options_to_json(const MeshOptions& options) {
+nlohmann::ordered_json options_to_json(const MeshOptions& options, ModelKind kind) {
+  const OptionScope other = is_planar(kind) ? OptionScope::kSolids : OptionScope::kPlanar;
   nlohmann::ordered_json json;
   for (const OptionRow& row : internal::option_rows()) {
-    json[std::string(row.info.name)] = row.get(options);
+    auto& value = json[std::string(row.info.name)];
+    if (row.info.scope != other) value = row.get(options, kind);
   }
   return json;
 }

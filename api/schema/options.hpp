@@ -2,6 +2,7 @@
 // line. One table in options.cpp defines them all.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -11,8 +12,11 @@
 
 #include "core/base/error.hpp"
 #include "core/model/mesh_options.hpp"
+#include "core/model/model.hpp"
 
 namespace symcell {
+
+enum class OptionScope : std::uint8_t { kAll, kPlanar, kSolids };
 
 // One row of the table, for help texts, the API description and the command line.
 struct OptionInfo {
@@ -20,12 +24,14 @@ struct OptionInfo {
   std::string_view metavar;   // what stands for the value in a help text; empty: a flag
   std::string_view standard;  // the default, in words; empty: unset
   std::string_view help;      // one line, with the unit and the range
-  bool solids_only;           // known, but refused for planar models
+  OptionScope scope;          // models of which kind take it
 };
 
 [[nodiscard]] std::span<const OptionInfo> mesh_option_table();
 
-// From a JSON object; unknown names are refused with kBadOption and a pointer "/options/<name>".
+// Options are parsed before the kind of the model may be known: options_for, below, tells whether
+// they fit it. From a JSON object; unknown names are refused with kBadOption and a pointer
+// "/options/<name>".
 [[nodiscard]] Result<MeshOptions> options_from_json(const nlohmann::json& object);
 
 // From texts, as in a query string or on a command line; names with `_` or `-`. A flag may have the
@@ -37,7 +43,13 @@ struct OptionInfo {
 // query parameters.
 [[nodiscard]] bool is_mesh_option(std::string_view name);
 
-// The options as used, for `settings` in the statistics; every name, null where unset.
-[[nodiscard]] nlohmann::ordered_json options_to_json(const MeshOptions& options);
+// The options as a model of this kind takes them: a planar model's `center` may come as
+// `axis_origin`, for example.  Errors: kBadOption and kBadAxis for what its kind has not; an option
+// of the other kind at its default asks for nothing and is passed over.
+[[nodiscard]] Result<MeshOptions> options_for(ModelKind kind, MeshOptions options);
+
+// The options as used, for `settings` in the statistics; every name, null where unset or not of
+// this kind. Reads back as the same options.
+[[nodiscard]] nlohmann::ordered_json options_to_json(const MeshOptions& options, ModelKind kind);
 
 }  // namespace symcell

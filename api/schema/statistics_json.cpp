@@ -22,17 +22,21 @@ Json point(const Point2& p) {
   return Json::array({number(p.x), number(p.y)});
 }
 
-Json cell_to_json(const Statistics::Cell& cell) {
+Json axis_to_json(const Point3& origin, const Point3& direction) {
+  return {{"origin", point(origin)}, {"direction", point(direction)}};
+}
+
+Json cell_to_json(const Statistics::Cell& cell, bool planar) {
   return {{"elements", cell.elements},
           {"nodes", cell.nodes},
           {"symmetry_nodes", cell.symmetry_nodes},
           {"symmetry_facets", cell.symmetry_facets},
-          {"area", number(cell.measure)},
+          {planar ? "area" : "volume", number(cell.measure)},
           {"min_angle_deg", number(cell.min_angle_deg)},
           {"max_angle_deg", number(cell.max_angle_deg)},
           {"max_radius_edge", number(cell.max_radius_edge)},
-          {"min_dihedral_deg", nullptr},  // of solids
-          {"max_dihedral_deg", nullptr},
+          {"min_dihedral_deg", planar ? Json(nullptr) : number(cell.min_dihedral_deg)},
+          {"max_dihedral_deg", planar ? Json(nullptr) : number(cell.max_dihedral_deg)},
           {"aspect_ratio_histogram", cell.aspect_ratio_histogram}};
 }
 
@@ -43,44 +47,21 @@ Json timings_to_json(const Statistics::TimingsMs& t) {
           {"write", number(t.write)},     {"total", number(t.total)}};
 }
 
-}  // namespace
-
-Json statistics_to_json(const Statistics& statistics, const MeshOptions& options) {
-  const Statistics::Symmetry& symmetry = statistics.symmetry;
-  const Statistics::Refinement& refinement = statistics.refinement;
-  Json json;
-  json["cell"] = cell_to_json(statistics.cell);
-  json["full"] = {{"elements", statistics.full.elements}, {"nodes", statistics.full.nodes}};
-  json["symmetry"] = {
-      {"fold", symmetry.fold},
-      {"axis",
-       {{"origin", point(symmetry.axis_origin)}, {"direction", point(symmetry.axis_direction)}}},
-      {"error", number(symmetry.error_rel)},
-      {"detected", symmetry.detected}};
-  json["refinement"] = {{"steiner_points", refinement.steiner_points},
-                        {"splits", refinement.splits},
-                        {"flips", refinement.flips},
-                        {"crossings", refinement.crossings},
-                        {"relocations", refinement.relocations},
-                        {"removed", refinement.removed}};
-  json["exempt"] = Json::array();
-  for (const ExemptCount& exempt : statistics.exempt) {
-    json["exempt"].push_back({{"reason", exempt.reason}, {"elements", exempt.elements}});
+Json folds_to_json(const std::vector<FoldCandidate>& folds) {
+  Json json = Json::array();
+  for (const FoldCandidate& rung : folds) {
+    json.push_back(
+        {{"fold", rung.fold}, {"error", number(rung.error_rel)}, {"accepted", rung.accepted}});
   }
-  json["timings_ms"] = timings_to_json(statistics.timings_ms);
-  json["peak_memory_bytes"] = statistics.peak_memory_bytes;
-  json["settings"] = options_to_json(options);
-  json["version"] = version();
   return json;
 }
 
-Json inspection_to_json(const PslgInspection& inspection) {
+Json inspected(const PslgInspection& inspection) {
   Json json;
   json["type"] = "pslg";
   json["dimension"] = 2;
   json["fold"] = inspection.fold;
-  json["axis"] = {{"origin", {number(inspection.center.x), number(inspection.center.y), 0.0}},
-                  {"direction", {0.0, 0.0, 1.0}}};
+  json["axis"] = axis_to_json({inspection.center.x, inspection.center.y, 0}, {0, 0, 1});
   json["symmetry_error"] = number(inspection.symmetry_error_rel);
   json["watertight"] = nullptr;  // of solids
   json["area"] = number(inspection.area);
@@ -92,13 +73,75 @@ Json inspection_to_json(const PslgInspection& inspection) {
   json["regions"] = inspection.regions;
   json["components"] = inspection.components;
   json["min_input_angle_deg"] = number(inspection.min_input_angle_deg);
-  json["folds"] = Json::array();
-  for (const FoldCandidate& rung : inspection.folds) {
-    json["folds"].push_back(
-        {{"fold", rung.fold}, {"error", number(rung.error_rel)}, {"accepted", rung.accepted}});
-  }
+  json["folds"] = folds_to_json(inspection.folds);
   json["version"] = version();
   return json;
+}
+
+// Null: what the kind of model has not, or what meshing alone would tell.
+Json inspected(const SolidInspection& inspection) {
+  const bool surface = inspection.kind == "surface";
+  Json json;
+  json["type"] = inspection.kind;
+  json["dimension"] = 3;
+  json["fold"] = inspection.fold;
+  json["axis"] = axis_to_json(inspection.axis_origin, inspection.axis_direction);
+  json["symmetry_error"] = number(inspection.symmetry_error_rel);
+  json["watertight"] = inspection.watertight;
+  json["volume"] = inspection.volume > 0 ? number(inspection.volume) : Json(nullptr);
+  json["surface_area"] = surface ? number(inspection.surface_area) : Json(nullptr);
+  json["diameter"] = number(inspection.diameter);
+  json["bounding_box"] = {{"min", point(inspection.bbox_min)}, {"max", point(inspection.bbox_max)}};
+  json["vertices"] = inspection.vertices;
+  json[surface ? "triangles" : "facets"] = inspection.facets;
+  if (surface) {
+    json["shells"] = inspection.shells;
+  } else {
+    json["holes"] = inspection.holes;
+    json["regions"] = inspection.regions;
+  }
+  json["repairs"] = inspection.repairs;
+  json["folds"] = folds_to_json(inspection.folds);
+  json["problem"] = inspection.problem.empty() ? Json(nullptr) : Json(inspection.problem);
+  json["version"] = version();
+  return json;
+}
+
+}  // namespace
+
+Json statistics_to_json(const Statistics& statistics, const MeshOptions& options, ModelKind kind) {
+  const Statistics::Symmetry& symmetry = statistics.symmetry;
+  const Statistics::Refinement& refinement = statistics.refinement;
+  Json json;
+  json["cell"] = cell_to_json(statistics.cell, is_planar(kind));
+  json["full"] = {{"elements", statistics.full.elements}, {"nodes", statistics.full.nodes}};
+  json["symmetry"] = {{"fold", symmetry.fold},
+                      {"axis", axis_to_json(symmetry.axis_origin, symmetry.axis_direction)},
+                      {"error", number(symmetry.error_rel)},
+                      {"detected", symmetry.detected}};
+  json["refinement"] = {{"steiner_points", refinement.steiner_points},
+                        {"splits", refinement.splits},
+                        {"flips", refinement.flips},
+                        {"crossings", refinement.crossings},
+                        {"relocations", refinement.relocations},
+                        {"removed", refinement.removed}};
+  json["exempt"] = Json::array();
+  for (const ExemptCount& exempt : statistics.exempt) {
+    json["exempt"].push_back({{"reason", exempt.reason}, {"elements", exempt.elements}});
+  }
+  if (!is_planar(kind)) {
+    json["delaunay"] = statistics.delaunay;
+    json["repairs"] = statistics.repairs;
+  }
+  json["timings_ms"] = timings_to_json(statistics.timings_ms);
+  json["peak_memory_bytes"] = statistics.peak_memory_bytes;
+  json["settings"] = options_to_json(options, kind);
+  json["version"] = version();
+  return json;
+}
+
+Json inspection_to_json(const Inspection& inspection) {
+  return std::visit([](const auto& found) { return inspected(found); }, inspection);
 }
 
 }  // namespace symcell

@@ -3,14 +3,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/mesh_model.hpp"
 #include "core/model/mesh_options.hpp"
+#include "core/model/model.hpp"
 #include "core/stats/statistics.hpp"
-#include "core/symmetry/symmetrise.hpp"
 
 namespace symcell {
 
 [[nodiscard]] nlohmann::ordered_json statistics_to_json(const Statistics& statistics,
-                                                        const MeshOptions& options);
-[[nodiscard]] nlohmann::ordered_json inspection_to_json(const PslgInspection& inspection);
+                                                        const MeshOptions& options,
+                                                        ModelKind kind);
+[[nodiscard]] nlohmann::ordered_json inspection_to_json(const Inspection& inspection);
 
 }  // namespace symcell

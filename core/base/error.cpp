@@ -30,11 +30,17 @@ std::string_view error_code_name(ErrorCode code) {
     case ErrorCode::kConflictingSeeds: return "conflicting_seeds";
     case ErrorCode::kNotSymmetric: return "not_symmetric";
     case ErrorCode::kUnsupportedModel: return "unsupported_model";
+    case ErrorCode::kDegenerateFacet: return "degenerate_facet";
+    case ErrorCode::kNonplanarFacet: return "nonplanar_facet";
+    case ErrorCode::kNotWatertight: return "not_watertight";
+    case ErrorCode::kAmbiguousSymmetry: return "ambiguous_symmetry";
+    case ErrorCode::kTetrahedralizationFailed: return "tetrahedralization_failed";
     case ErrorCode::kBoundUnreachable: return "bound_unreachable";
     case ErrorCode::kElementLimit: return "element_limit";
     case ErrorCode::kTimeLimit: return "time_limit";
     case ErrorCode::kMemoryLimit: return "memory_limit";
     case ErrorCode::kCancelled: return "cancelled";
+    case ErrorCode::kWorkerCrashed: return "worker_crashed";
     case ErrorCode::kWriteFailed: return "write_failed";
     case ErrorCode::kInternal: return "internal";
   }

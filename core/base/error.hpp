@@ -44,13 +44,19 @@ enum class ErrorCode : std::uint16_t {
   kConflictingSeeds = 309,
   kNotSymmetric = 310,
   kUnsupportedModel = 311,
+  kDegenerateFacet = 312,
+  kNonplanarFacet = 313,
+  kNotWatertight = 314,
+  kAmbiguousSymmetry = 315,  // a surface of revolution: the fold must be given
   // Meshing.
   kBoundUnreachable = 400,
+  kTetrahedralizationFailed = 401,  // no sector could be tetrahedralized
   // Limits.
   kElementLimit = 500,
   kTimeLimit = 501,
   kMemoryLimit = 502,
   kCancelled = 503,
+  kWorkerCrashed = 504,  // the worker process died on this job
   // Writing.
   kWriteFailed = 600,
   // A mesh failed its own checks, or a library failed: never the user's fault.

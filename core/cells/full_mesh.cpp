@@ -27,7 +27,7 @@ FullMeshView::FullMeshView(const SymmetryCellMesh& cell) : cell_(&cell), rotatio
 
 Point3 FullMeshView::position(OrbitVertex v) const {
   const Point3 local = cell_->orbit_points[static_cast<std::size_t>(v.orbit)];
-  const Point2 planar = rotations_.rotate({local.x, local.y}, v.exponent);
+  const Point2 planar = rotations_.rotate(Point2{local.x, local.y}, v.exponent);
   const Point3& o = cell_->axis_origin;
   if (cell_->dimension == 2) return {o.x + planar.x, o.y + planar.y, 0};
   const auto& f = cell_->frame;

@@ -76,7 +76,8 @@ class Elevation {
     return {{a.orbit, b.orbit, relative}, a.exponent};
   }
 
-  // Corner pairs in VTK's order of mid-side nodes; segments and triangles are their prefixes.
+  // Corner pairs in VTK's order of mid-side nodes; a triangle's third side runs 2-0, as in the
+  // plane.
   static std::span<const std::array<std::size_t, 2>> sides(std::int32_t corners) {
     static constexpr std::array<std::array<std::size_t, 2>, 1> kSegment{{{0, 1}}};
     static constexpr std::array<std::array<std::size_t, 2>, 3> kTriangle{{{0, 1}, {1, 2}, {2, 0}}};
@@ -109,7 +110,7 @@ class Elevation {
   [[nodiscard]] Point3 midpoint(const EdgeKey& key) const {
     const Point3& a = mesh_.orbit_points[static_cast<std::size_t>(key.orbit_a)];
     const Point3& b = mesh_.orbit_points[static_cast<std::size_t>(key.orbit_b)];
-    const Point2 turned_b = rotations_.rotate({b.x, b.y}, key.relative);
+    const Point2 turned_b = rotations_.rotate(Point2{b.x, b.y}, key.relative);
     return {0.5 * (a.x + turned_b.x), 0.5 * (a.y + turned_b.y), 0.5 * (a.z + b.z)};
   }
 
@@ -178,7 +179,8 @@ class Elevation {
     return result;
   }
 
-  // Mid nodes on a boundary facet take its marker; copies of one orbit take the same.
+  // Mid nodes on boundary facets take their marker, the smallest but 0 where there are several;
+  // copies of one orbit take the same.
   void mark_nodes() {
     std::vector<std::int32_t> marker_of_orbit(result_.orbit_points.size(), 0);
     const auto corners = static_cast<std::size_t>(mesh_.nodes_per_facet);
@@ -187,7 +189,8 @@ class Elevation {
       for (std::size_t i = corners; i < all; ++i) {
         const auto node = static_cast<std::size_t>(result_.boundary[b * all + i]);
         std::int32_t& marker = marker_of_orbit[static_cast<std::size_t>(result_.nodes[node].orbit)];
-        if (marker == 0) marker = result_.boundary_markers[b];
+        const std::int32_t own = result_.boundary_markers[b];
+        if (own != 0 && (marker == 0 || own < marker)) marker = own;
       }
     }
     for (std::size_t i = mesh_.nodes.size(); i < result_.nodes.size(); ++i) {
@@ -199,6 +202,11 @@ class Elevation {
     for (std::size_t i = 0; i < result_.lower_facets.size(); ++i) {
       result_.lower_to_higher[static_cast<std::size_t>(result_.lower_facets[i])] =
           result_.higher_facets[i];
+    }
+    if (mesh_.fold == 1) return;
+    for (std::size_t i = mesh_.nodes.size(); i < result_.nodes.size(); ++i) {
+      const auto orbit = static_cast<std::size_t>(result_.nodes[i].orbit);
+      if (result_.on_axis[orbit] != 0) result_.lower_to_higher[i] = static_cast<std::int32_t>(i);
     }
   }
 

@@ -6,8 +6,9 @@
 // Invariants:
 // - node i of the cell is rotation^exponent of orbit_points[orbit]; no two nodes are equal as
 //   (orbit, exponent) pairs; every orbit has at least one node; axis orbits have exponent 0 only;
-// - elements are positively oriented (2D: counter-clockwise); order 2: mid-side nodes follow the
-//   corners in VTK's order (triangle6: edges 01, 12, 20);
+// - elements are positively oriented (2D: counter-clockwise; 3D: (1 - 0) x (2 - 0) . (3 - 0) > 0);
+//   order 2: mid-side nodes follow the corners in VTK's order (triangle6: edges 01, 12, 20;
+//   tetrahedron10: 01, 12, 02, 03, 13, 23);
 // - lower_to_higher[i] is the index of the cell node that is the image of node i under +360/n
 //   degrees if i lies on the lower bound, -1 elsewhere; a node on the axis maps to itself (n > 1);
 // - rotating the cell by all n exponents gives every element of the full mesh exactly once.

@@ -1,24 +1,49 @@
 #include "core/cells/verify_mesh.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <numeric>
+#include <span>
+#include <variant>
 
 #include "core/cells/verify_support.hpp"
-#include "core/geometry/predicates.hpp"
+#include "core/geometry/axis_frame.hpp"
 
 namespace symcell {
 namespace {
 
 using internal::Checks;
-using internal::HalfEdge;
-using internal::planar;
+using internal::FacetedMesh;
+using internal::HalfFacet;
 using internal::shown;
+
+// Even permutations of an element's corners: the orders in which a copy may name them.
+using CornerOrder = std::array<std::size_t, 4>;
+constexpr std::array<CornerOrder, 3> kTriangleOrders{{{0, 1, 2, 3}, {1, 2, 0, 3}, {2, 0, 1, 3}}};
+constexpr std::array<CornerOrder, 12> kTetrahedronOrders{{{0, 1, 2, 3},
+                                                          {1, 2, 0, 3},
+                                                          {2, 0, 1, 3},
+                                                          {0, 2, 3, 1},
+                                                          {0, 3, 1, 2},
+                                                          {1, 0, 3, 2},
+                                                          {1, 3, 2, 0},
+                                                          {2, 1, 3, 0},
+                                                          {2, 3, 0, 1},
+                                                          {3, 0, 2, 1},
+                                                          {3, 1, 0, 2},
+                                                          {3, 2, 1, 0}}};
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+// Places at elements are counted with 32 bits, six an element.
+constexpr std::size_t kMostLinked = 300'000'000;
 
 class Verifier {
  public:
   Verifier(const MeshData& cell,
            const MeshData* full,
-           const Pslg* model,
+           const Model* model,
            const VerifyOptions& options,
            VerifyReport& report)
       : cell_(cell),
@@ -30,8 +55,11 @@ class Verifier {
 
   void run() {
     if (!internal::check_elements(cell_, "cell", internal::diameter(cell_.points), checks_)) return;
+    frame_ = AxisFrame::of_axis(cell_.axis_origin, cell_.axis_direction);
+    if (cell_.dimension == 2) frame_.origin.z = 0;
     diameter_ = full_ != nullptr ? internal::diameter(full_->points) : restored_diameter();
     tolerance_ = std::max(options_.tolerance_rel * diameter_, rounding());
+    internal::tell_quality(cell_, checks_);
     if (!check_pairs() || !check_bounds()) return;
     MeshData restored;
     const MeshData* full = full_;
@@ -46,45 +74,61 @@ class Verifier {
       full = &restored;
     }
     if (!internal::check_elements(*full, "full", diameter_, checks_)) return;
-    check_copies(*full);
-    check_area(*full);
-    const std::vector<HalfEdge> edges = internal::sorted_edges(*full);
-    const std::vector<std::size_t> groups = internal::edge_groups(edges);
-    std::vector<char> constrained(groups.size(), 0);
-    if (model_ != nullptr) {
-      constrained = internal::check_model(
-          *full, edges, groups, *model_,
-          std::max(options_.model_tolerance_rel * diameter_, tolerance_), checks_);
-    } else {
-      checks_.skip("model.segments", "no model was given");
-    }
-    tell_delaunay(*full, edges, groups, constrained);
+    const bool copies = check_copies(*full);
+    check_measure(*full);
+    const std::vector<HalfFacet> facets = internal::sorted_facets(*full);
+    const std::vector<std::size_t> groups = internal::facet_groups(facets);
+    const FacetedMesh faceted{*full, facets, groups};
+    if (copies && full->dimension == 3) check_links(faceted);
+    internal::tell_delaunay(faceted, check_model(faceted), checks_);
   }
 
  private:
-  [[nodiscard]] Point2 center() const { return planar(cell_.axis_origin); }
-
-  // The rotation about an axis along -z runs the other way round.
-  [[nodiscard]] std::int32_t turn(std::int32_t k) const {
-    return cell_.axis_direction.z > 0 ? rotations_.reduce(k) : rotations_.reduce(-k);
-  }
-  [[nodiscard]] Point2 rotated(const Point3& p, std::int32_t k) const {
-    return center() + rotations_.rotate(planar(p) - center(), turn(k));
+  [[nodiscard]] Point3 rotated(const Point3& p, std::int32_t k) const {
+    const Point3 local = frame_.to_local(p);
+    return frame_.to_model(rotations_.rotate(local, rotations_.reduce(k)));
   }
 
   // Of the coordinates: what a correct mesh far from the origin may be off by.
   [[nodiscard]] double rounding() const {
-    double largest = std::max(std::abs(center().x), std::abs(center().y));
-    for (const Point3& p : cell_.points) {
-      largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
-    }
+    const auto size = [](const Point3& p) {
+      return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    };
+    double largest = size(cell_.axis_origin);
+    for (const Point3& p : cell_.points) largest = std::max(largest, size(p));
     return 16 * 0x1p-52 * largest;
   }
 
   [[nodiscard]] double restored_diameter() const {
+    if (cell_.fold == 1) return internal::diameter(cell_.points);
     double reach = 0;
-    for (const Point3& p : cell_.points) reach = std::max(reach, distance(planar(p), center()));
-    return cell_.fold == 1 ? internal::diameter(cell_.points) : 2 * reach;
+    double low = kFar, high = -kFar;
+    for (const Point3& p : cell_.points) {
+      const Point3 local = frame_.to_local(p);
+      reach = std::max(reach, length(internal::planar(local)));
+      low = std::min(low, local.z);
+      high = std::max(high, local.z);
+    }
+    return std::hypot(2 * reach, high - low);
+  }
+
+  std::vector<char> check_model(const FacetedMesh& full) {
+    const std::vector<char> none(full.groups.size(), 0);
+    if (model_ == nullptr) {
+      checks_.skip("model.boundary", "no model was given");
+      return none;
+    }
+    const ModelKind kind = kind_of(*model_);
+    if (is_planar(kind) != (cell_.dimension == 2)) {
+      checks_.add("model.boundary", false, "the model has another dimension than the mesh");
+      return none;
+    }
+    const double share = options_.model_tolerance_rel.value_or(
+        kind == ModelKind::kSurface ? kSurfaceToleranceRel : kExactToleranceRel);
+    const double tolerance = std::max(share * diameter_, tolerance_);
+    return std::visit(
+        [&](const auto& model) { return internal::check_model(full, model, tolerance, checks_); },
+        *model_);
   }
 
   bool check_pairs() {
@@ -105,7 +149,7 @@ class Verifier {
         break;
       }
       ++count;
-      const double off = distance(rotated(cell_.points[i], 1), planar(cell_.points[j]));
+      const double off = distance(rotated(cell_.points[i], 1), cell_.points[j]);
       worst = std::max(worst, off);
       if (!(off <= tolerance_)) wrong = name + " is off its pair by " + shown(off);
       if (taken[j] != 0) wrong = "node " + std::to_string(j) + " is the pair of two nodes";
@@ -117,35 +161,37 @@ class Verifier {
         wrong.empty() ? std::to_string(count) + " pairs, worst off by " + shown(worst) : wrong);
   }
 
-  // Boundary edges of the cell with both ends on the lower bound go to boundary edges that run the
-  // other way; a lone edge of that kind would be a gap in the full mesh.
+  // Boundary facets of the cell with all corners on the lower bound go to boundary facets that are
+  // seen from the other side; one seen from the same side would overlap in the full mesh.
   bool check_bounds() {
-    const std::vector<HalfEdge> edges = internal::sorted_edges(cell_);
-    const std::vector<std::size_t> groups = internal::edge_groups(edges);
-    std::vector<HalfEdge> boundary;
+    const std::vector<HalfFacet> facets = internal::sorted_facets(cell_);
+    const std::vector<std::size_t> groups = internal::facet_groups(facets);
+    std::vector<HalfFacet> boundary;
     for (std::size_t g = 0; g + 1 < groups.size(); ++g) {
-      if (groups[g + 1] - groups[g] == 1) boundary.push_back(edges[groups[g]]);
+      if (groups[g + 1] - groups[g] == 1) boundary.push_back(facets[groups[g]]);
     }
-    const auto& pairs = cell_.lower_to_higher;
-    std::size_t bound_edges = 0;
+    const auto corners = static_cast<std::size_t>(cell_.dimension);
+    std::size_t bound_facets = 0;
     std::string wrong;
-    for (const HalfEdge& e : boundary) {
-      const std::int32_t a = pairs[static_cast<std::size_t>(e.low)];
-      const std::int32_t b = pairs[static_cast<std::size_t>(e.high)];
-      if (a < 0 || b < 0) continue;
-      const std::pair wanted(std::min(a, b), std::max(a, b));
-      const auto image = std::ranges::lower_bound(
-          boundary, wanted, {}, [](const HalfEdge& h) { return std::pair(h.low, h.high); });
-      if (image == boundary.end() || std::pair(image->low, image->high) != wanted) continue;
-      ++bound_edges;
-      const bool same_way = image->ascending == (e.ascending == (a < b));
-      if (same_way && wrong.empty()) {
-        wrong = "edge " + std::to_string(e.low) + "-" + std::to_string(e.high) +
-                " and its image have the cell on one side";
+    for (const HalfFacet& f : boundary) {
+      std::array<std::int32_t, 3> image{-1, -1, -1};
+      bool paired = true;
+      for (std::size_t i = 0; i < corners; ++i) {
+        image[i] = cell_.lower_to_higher[static_cast<std::size_t>(f.nodes[i])];
+        paired = paired && image[i] >= 0;
+      }
+      if (!paired) continue;
+      const bool even = internal::sort_facet(image, cell_.dimension);
+      const auto found = std::ranges::lower_bound(boundary, image, {}, &HalfFacet::nodes);
+      if (found == boundary.end() || found->nodes != image) continue;
+      ++bound_facets;
+      const bool same_side = found->even == (f.even == even);
+      if (same_side && wrong.empty()) {
+        wrong = internal::facet_name(f.nodes) + " and its image have the cell on one side";
       }
     }
     return checks_.add("cell.bounds", wrong.empty(),
-                       wrong.empty() ? std::to_string(bound_edges) + " edges on a bound" : wrong);
+                       wrong.empty() ? std::to_string(bound_facets) + " facets on a bound" : wrong);
   }
 
   // n copies of the cell, glued by the pairs: (i, k + 1) is (pair of i, k).
@@ -177,8 +223,8 @@ class Verifier {
       const std::size_t r = root(v);
       if (r == v) {
         id[v] = static_cast<std::int32_t>(full.points.size());
-        const Point2 p = rotated(cell_.points[v % nodes], static_cast<std::int32_t>(v / nodes));
-        full.points.push_back({p.x, p.y, 0});
+        full.points.push_back(
+            rotated(cell_.points[v % nodes], static_cast<std::int32_t>(v / nodes)));
       } else {
         id[v] = id[r];  // the root is the smallest of its class
       }
@@ -196,18 +242,40 @@ class Verifier {
     return full;
   }
 
-  // Corners may be turned round within an element.
+  // Where the nodes of an element stand if its corners are named in another order.
+  [[nodiscard]] std::array<std::size_t, 10> node_order(const CornerOrder& corners) const {
+    std::array<std::size_t, 10> order{};
+    const auto count = static_cast<std::size_t>(cell_.dimension) + 1;
+    std::copy_n(corners.begin(), count, order.begin());
+    const auto edges = internal::edge_corners(cell_.dimension);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const std::size_t a = corners[edges[i][0]], b = corners[edges[i][1]];
+      for (std::size_t j = 0; j < edges.size(); ++j) {
+        const bool same =
+            (edges[j][0] == a && edges[j][1] == b) || (edges[j][0] == b && edges[j][1] == a);
+        if (same) order[count + i] = count + j;
+      }
+    }
+    return order;
+  }
+
   [[nodiscard]] double copy_error(const MeshData& full, std::size_t e) const {
     const auto k = static_cast<std::size_t>(cell_.nodes_per_element);
     const auto source = static_cast<std::size_t>(full.cell_elements[e]);
-    double best = kInfinity;
-    for (std::size_t shift = 0; shift < 3; ++shift) {
+    std::array<Point3, 10> wanted;
+    for (std::size_t i = 0; i < k; ++i) {
+      const auto node = static_cast<std::size_t>(cell_.elements[source * k + i]);
+      wanted[i] = rotated(cell_.points[node], full.sectors[e]);
+    }
+    const std::span<const CornerOrder> orders =
+        cell_.dimension == 2 ? std::span<const CornerOrder>(kTriangleOrders) : kTetrahedronOrders;
+    double best = kFar;
+    for (const CornerOrder& corners : orders) {
+      const auto order = node_order(corners);
       double worst = 0;
       for (std::size_t i = 0; i < k; ++i) {
-        const std::size_t j = i < 3 ? (i + shift) % 3 : 3 + (i - 3 + shift) % 3;
-        const Point3& from = cell_.points[static_cast<std::size_t>(cell_.elements[source * k + i])];
-        const Point3& to = full.points[static_cast<std::size_t>(full.elements[e * k + j])];
-        worst = std::max(worst, distance(rotated(from, full.sectors[e]), planar(to)));
+        const auto node = static_cast<std::size_t>(full.elements[e * k + order[i]]);
+        worst = std::max(worst, distance(wanted[i], full.points[node]));
       }
       best = std::min(best, worst);
       if (best <= tolerance_) break;
@@ -215,14 +283,15 @@ class Verifier {
     return best;
   }
 
-  void check_copies(const MeshData& full) {
+  bool check_copies(const MeshData& full) {
     std::string wrong;
     double worst = 0;
     const std::size_t elements = cell_.element_count();
     const auto n = static_cast<std::size_t>(cell_.fold);
-    if (full.fold != cell_.fold || full.order != cell_.order ||
-        distance(planar(full.axis_origin), center()) > tolerance_) {
-      wrong = "fold, order or axis differ from the cell's";
+    if (full.fold != cell_.fold || full.order != cell_.order || full.dimension != cell_.dimension ||
+        distance(full.axis_origin, cell_.axis_origin) > tolerance_ ||
+        distance(full.axis_direction, cell_.axis_direction) > options_.tolerance_rel) {
+      wrong = "dimension, fold, order or axis differ from the cell's";
     } else if (full.element_count() != elements * n) {
       wrong = std::to_string(full.element_count()) + " elements, expected " +
               std::to_string(elements * n);
@@ -248,60 +317,89 @@ class Verifier {
     }
     std::string detail = "worst off by " + shown(worst);
     if (other_regions > 0) detail += "; " + std::to_string(other_regions) + " of another region";
-    checks_.add("full.copies", wrong.empty(), wrong.empty() ? detail : wrong);
+    return checks_.add("full.copies", wrong.empty(), wrong.empty() ? detail : wrong);
   }
 
-  void check_area(const MeshData& full) {
-    const double expected = internal::total_area(cell_) * cell_.fold;
-    const double found = internal::total_area(full);
-    const double allowed = 1e-9 * expected + 4 * tolerance_ * diameter_;
-    checks_.add("full.area", std::abs(found - expected) <= allowed,
+  void check_measure(const MeshData& full) {
+    const bool plane = cell_.dimension == 2;
+    const std::string name = plane ? "area" : "volume";
+    const double expected = internal::total_measure(cell_) * cell_.fold;
+    const double found = internal::total_measure(full);
+    // What a layer of one tolerance round the mesh holds.
+    const double layer = 4 * diameter_ * (plane ? 1 : diameter_);
+    const double allowed = 1e-9 * expected + tolerance_ * layer;
+    checks_.add("full." + name, std::abs(found - expected) <= allowed,
                 shown(found) + ", cell times fold " + shown(expected));
-    if (!options_.model_area) return;
-    const double moved = 4 * options_.model_tolerance_rel * diameter_ * diameter_;
-    checks_.add("model.area",
-                std::abs(found - *options_.model_area) <= allowed + 1e-9 * expected + moved,
-                shown(found) + ", the model's " + shown(*options_.model_area));
-  }
-
-  void tell_delaunay(const MeshData& full,
-                     const std::vector<HalfEdge>& edges,
-                     const std::vector<std::size_t>& groups,
-                     const std::vector<char>& constrained) {
-    const auto k = static_cast<std::size_t>(full.nodes_per_element);
-    std::size_t inner = 0;
-    std::size_t delaunay = 0;
-    const auto point = [&](std::int32_t node) {
-      return planar(full.points[static_cast<std::size_t>(node)]);
-    };
-    for (std::size_t g = 0; g + 1 < groups.size(); ++g) {
-      if (groups[g + 1] - groups[g] != 2 || constrained[g] != 0) continue;
-      const HalfEdge& first = edges[groups[g]];
-      const HalfEdge& second = edges[groups[g] + 1];
-      const std::int32_t* a = &full.elements[static_cast<std::size_t>(first.element) * k];
-      const std::int32_t* b = &full.elements[static_cast<std::size_t>(second.element) * k];
-      std::int32_t opposite = *b;
-      for (std::size_t i = 0; i < 3; ++i) {
-        if (b[i] != second.low && b[i] != second.high) opposite = b[i];
-      }
-      ++inner;
-      const Sign inside = in_circle(point(a[0]), point(a[1]), point(a[2]), point(opposite));
-      if (inside != Sign::kPositive) ++delaunay;
-    }
+    if (!options_.model_measure) return;
+    const bool surface = model_ != nullptr && kind_of(*model_) == ModelKind::kSurface;
     const double share =
-        inner == 0 ? 1 : static_cast<double>(delaunay) / static_cast<double>(inner);
-    checks_.add("full.delaunay", true,
-                shown(100 * share) + " % of " + std::to_string(inner) + " free edges");
+        options_.model_tolerance_rel.value_or(surface ? kSurfaceToleranceRel : kExactToleranceRel);
+    const double moved = share * diameter_ * layer;
+    checks_.add("model." + name,
+                std::abs(found - *options_.model_measure) <= allowed + 1e-9 * expected + moved,
+                shown(found) + ", the model's " + shown(*options_.model_measure));
   }
 
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  // A model may pinch itself, and then so does its mesh; the cell must not do it anywhere else.
+  void check_links(const FacetedMesh& full) {
+    if (full.mesh.element_count() > kMostLinked) {
+      checks_.skip("cell.links", "the full mesh is too large");
+      return;
+    }
+    const internal::Pinches of_full = internal::find_pinches(full);
+    checks_.add("full.links", true,
+                std::to_string(of_full.nodes.size()) + " nodes and " +
+                    std::to_string(of_full.edges.size()) + " edges at which the mesh pinches");
+    std::vector<char> pinched(full.mesh.points.size(), 0);
+    for (const std::int32_t node : of_full.nodes) pinched[static_cast<std::size_t>(node)] = 1;
+    for (const auto& edge : of_full.edges) {
+      for (const std::int32_t node : edge) pinched[static_cast<std::size_t>(node)] = 1;
+    }
+    const std::vector<HalfFacet> facets = internal::sorted_facets(cell_);
+    const std::vector<std::size_t> groups = internal::facet_groups(facets);
+    const internal::Pinches of_cell = internal::find_pinches({cell_, facets, groups});
+    const std::vector<char> excused = nodes_that_pinch(full.mesh, pinched);
+    std::string wrong;
+    for (const std::int32_t node : of_cell.nodes) {
+      if (excused[static_cast<std::size_t>(node)] != 0 || !wrong.empty()) continue;
+      wrong = "the cell pinches at node " + std::to_string(node);
+    }
+    for (const auto& edge : of_cell.edges) {
+      const bool both = excused[static_cast<std::size_t>(edge[0])] != 0 &&
+                        excused[static_cast<std::size_t>(edge[1])] != 0;
+      if (both || !wrong.empty()) continue;
+      wrong = "the cell pinches at " + internal::facet_name({edge[0], edge[1], -1});
+    }
+    checks_.add("cell.links", wrong.empty(), wrong);
+  }
+
+  // Nodes of the cell that are pinched nodes of the full mesh, told by the copy in sector 0.
+  [[nodiscard]] std::vector<char> nodes_that_pinch(const MeshData& full,
+                                                   const std::vector<char>& pinched) const {
+    std::vector<char> result(cell_.points.size(), 0);
+    const auto k = static_cast<std::size_t>(cell_.nodes_per_element);
+    for (std::size_t e = 0; e < full.element_count(); ++e) {
+      if (full.sectors[e] != 0) continue;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const auto node = static_cast<std::size_t>(full.elements[e * k + i]);
+        if (pinched[node] == 0) continue;
+        for (std::size_t j = 0; j < 4; ++j) {
+          const auto own = static_cast<std::size_t>(
+              cell_.elements[static_cast<std::size_t>(full.cell_elements[e]) * k + j]);
+          if (distance(cell_.points[own], full.points[node]) <= tolerance_) result[own] = 1;
+        }
+      }
+    }
+    return result;
+  }
 
   const MeshData& cell_;
   const MeshData* full_;
-  const Pslg* model_;
+  const Model* model_;
   const VerifyOptions& options_;
   Checks checks_;
   RotationTable rotations_;
+  AxisFrame frame_;
   double diameter_ = 0;
   double tolerance_ = 0;
 };
@@ -310,7 +408,7 @@ class Verifier {
 
 VerifyReport verify_mesh(const MeshData& cell,
                          const MeshData* full,
-                         const Pslg* model,
+                         const Model* model,
                          const VerifyOptions& options) {
   VerifyReport report;
   Verifier(cell, full, model, options, report).run();

@@ -41,19 +41,14 @@ class NodeFinder {
 
 class ModelChecker {
  public:
-  ModelChecker(const MeshData& full,
-               const std::vector<HalfEdge>& edges,
-               const std::vector<std::size_t>& groups,
-               const Pslg& model,
-               double tolerance,
-               Checks& checks)
-      : full_(full),
-        edges_(edges),
-        groups_(groups),
+  ModelChecker(const FacetedMesh& full, const Pslg& model, double tolerance, Checks& checks)
+      : full_(full.mesh),
+        edges_(full.facets),
+        groups_(full.groups),
         model_(model),
         tolerance_(tolerance),
         checks_(checks),
-        constrained_(groups.size(), 0) {}
+        constrained_(full.groups.size(), 0) {}
 
   std::vector<char> run() {
     collect_neighbours();
@@ -74,15 +69,15 @@ class ModelChecker {
   void collect_neighbours() {
     first_.assign(full_.points.size() + 1, 0);
     for (std::size_t g = 0; g + 1 < groups_.size(); ++g) {
-      ++first_[static_cast<std::size_t>(edges_[groups_[g]].low) + 1];
-      ++first_[static_cast<std::size_t>(edges_[groups_[g]].high) + 1];
+      ++first_[static_cast<std::size_t>(edges_[groups_[g]].nodes[0]) + 1];
+      ++first_[static_cast<std::size_t>(edges_[groups_[g]].nodes[1]) + 1];
     }
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
     around_.resize(first_.back());
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
     for (std::size_t g = 0; g + 1 < groups_.size(); ++g) {
-      around_[next[static_cast<std::size_t>(edges_[groups_[g]].low)]++] = g;
-      around_[next[static_cast<std::size_t>(edges_[groups_[g]].high)]++] = g;
+      around_[next[static_cast<std::size_t>(edges_[groups_[g]].nodes[0])]++] = g;
+      around_[next[static_cast<std::size_t>(edges_[groups_[g]].nodes[1])]++] = g;
     }
   }
 
@@ -143,8 +138,8 @@ class ModelChecker {
   }
 
   [[nodiscard]] std::int32_t other_end(std::size_t group, std::int32_t node) const {
-    const HalfEdge& e = edges_[groups_[group]];
-    return e.low == node ? e.high : e.low;
+    const HalfFacet& e = edges_[groups_[group]];
+    return e.nodes[0] == node ? e.nodes[1] : e.nodes[0];
   }
 
   // A segment that is no chain of edges must lie outside the meshed domain: samples of it tell.
@@ -164,9 +159,8 @@ class ModelChecker {
     std::string wrong;
     for (std::size_t g = 0; g + 1 < groups_.size() && wrong.empty(); ++g) {
       if (groups_[g + 1] - groups_[g] != 1 || constrained_[g] != 0) continue;
-      const HalfEdge& e = edges_[groups_[g]];
-      wrong = "boundary edge " + std::to_string(e.low) + "-" + std::to_string(e.high) +
-              " of the mesh lies on no segment";
+      const HalfFacet& e = edges_[groups_[g]];
+      wrong = "boundary " + facet_name(e.nodes) + " of the mesh lies on no segment";
     }
     checks_.add("model.boundary", wrong.empty(), wrong);
   }
@@ -175,12 +169,11 @@ class ModelChecker {
     std::string wrong;
     for (std::size_t g = 0; g + 1 < groups_.size() && wrong.empty(); ++g) {
       if (groups_[g + 1] - groups_[g] != 2 || constrained_[g] != 0) continue;
-      const HalfEdge& e = edges_[groups_[g]];
+      const HalfFacet& e = edges_[groups_[g]];
       const auto a = static_cast<std::size_t>(e.element);
       const auto b = static_cast<std::size_t>(edges_[groups_[g] + 1].element);
       if (full_.regions[a] == full_.regions[b]) continue;
-      wrong = "the region changes across edge " + std::to_string(e.low) + "-" +
-              std::to_string(e.high) + ", which is on no segment";
+      wrong = "the region changes across " + facet_name(e.nodes) + ", which is on no segment";
     }
     checks_.add("model.region_borders", wrong.empty(), wrong);
   }
@@ -254,7 +247,7 @@ class ModelChecker {
   std::string& wrong(Role role) { return wrong_[static_cast<std::size_t>(role)]; }
 
   const MeshData& full_;
-  const std::vector<HalfEdge>& edges_;
+  const std::vector<HalfFacet>& edges_;
   const std::vector<std::size_t>& groups_;
   const Pslg& model_;
   double tolerance_;
@@ -269,13 +262,11 @@ class ModelChecker {
 
 }  // namespace
 
-std::vector<char> check_model(const MeshData& full,
-                              const std::vector<HalfEdge>& edges,
-                              const std::vector<std::size_t>& groups,
+std::vector<char> check_model(const FacetedMesh& full,
                               const Pslg& model,
                               double tolerance,
                               Checks& checks) {
-  return ModelChecker(full, edges, groups, model, tolerance, checks).run();
+  return ModelChecker(full, model, tolerance, checks).run();
 }
 
 }  // namespace symcell::internal

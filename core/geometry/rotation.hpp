@@ -26,6 +26,12 @@ class RotationTable {
     return {e.cosine * p.x - e.sine * p.y, e.sine * p.x + e.cosine * p.y};
   }
 
+  // About the z axis.
+  [[nodiscard]] Point3 rotate(Point3 p, std::int32_t exponent) const {
+    const Point2 q = rotate(Point2{p.x, p.y}, exponent);
+    return {q.x, q.y, p.z};
+  }
+
   // Any exponent to [0, fold).
   [[nodiscard]] std::int32_t reduce(std::int64_t exponent) const {
     const std::int64_t r = exponent % fold_;

@@ -27,6 +27,11 @@ std::string describe_point(Point2 p) {
   return "(" + describe_number(p.x) + ", " + describe_number(p.y) + ")";
 }
 
+std::string describe_point(Point3 p) {
+  return "(" + describe_number(p.x) + ", " + describe_number(p.y) + ", " + describe_number(p.z) +
+         ")";
+}
+
 std::string describe_vertex(std::span<const Point2> vertices, std::int64_t vertex) {
   return "vertex " + std::to_string(vertex) + " at " +
          describe_point(vertices[static_cast<std::size_t>(vertex)]);

@@ -16,6 +16,7 @@ namespace symcell {
 [[nodiscard]] std::string describe_rounded(double value);
 // "(1.5, 2)"
 [[nodiscard]] std::string describe_point(Point2 p);
+[[nodiscard]] std::string describe_point(Point3 p);
 // "vertex 3 at (1.5, 2)"
 [[nodiscard]] std::string describe_vertex(std::span<const Point2> vertices, std::int64_t vertex);
 // "segment 7 (vertices 3-4)"

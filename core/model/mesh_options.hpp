@@ -14,18 +14,29 @@ inline constexpr double kMaxMinAngleDeg = 42.0;
 // Exponents fit 16 bits in the triangulation; no real part comes near it.
 inline constexpr std::int32_t kMaxFold = 30'000;
 
+inline constexpr double kExactSymmetryToleranceRel = 1e-6;    // PSLG and PLC
+inline constexpr double kSurfaceSymmetryToleranceRel = 1e-3;  // tessellated surfaces
+
 // Values are what a user writes in `options`; infinities mean "no bound".
 struct MeshOptions {
-  std::optional<std::int32_t> fold;  // nullopt: detect; 1: no symmetry
-  bool ignore_markers = false;       // markers and region attributes take no part in the symmetry
-  std::optional<Point2> center;      // nullopt: detect
-  double symmetry_tolerance_rel = 1e-6;  // of the model's diameter (bounding-box diagonal)
-  double min_angle_deg = 30;
-  double max_area = kInfinity;              // input units squared
+  std::optional<std::int32_t> fold;   // nullopt: detect; 1: no symmetry
+  bool ignore_markers = false;        // markers and region attributes take no part in the symmetry
+  std::optional<Point2> center;       // planar; nullopt: detect
+  std::optional<Point3> axis_origin;  // solids; nullopt: detect
+  std::optional<Point3> axis_direction;  // solids; nullopt: detect; not the zero vector
+  // Of the model's diameter (bounding-box diagonal); nullopt: the default of the kind of model.
+  std::optional<double> symmetry_tolerance_rel;
+  double min_angle_deg = 30;                // planar
+  double max_area = kInfinity;              // planar; input units squared
+  double radius_edge = 1.414;               // solids: circumradius / shortest edge
+  double max_volume = kInfinity;            // solids; input units cubed
+  double min_dihedral_deg = 0;              // solids: a goal of the improvement, not a promise
+  bool delaunay = false;                    // solids: keep the mesh Delaunay, no improvement beyond
   double max_edge = kInfinity;              // input units
   std::int32_t order = 1;                   // 1: linear, 2: quadratic with mid-side nodes
   std::uint64_t max_elements = 50'000'000;  // of the cell
   double time_limit_s = kInfinity;
+  std::uint64_t memory_limit_bytes = 0;  // of the process that meshes; 0: none
   std::uint64_t seed = 0;
   // Plain Delaunay refinement only: no relocation, no coarsening. For comparison and benchmarks.
   bool plain = false;

@@ -3,10 +3,14 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <vector>
 
 #include "core/cells/full_mesh.hpp"
+#include "core/stats/tet_figures.hpp"
 
 namespace symcell {
 namespace {
@@ -18,10 +22,7 @@ std::size_t aspect_bin(double aspect) {
       std::upper_bound(std::begin(kBinEdges), std::end(kBinEdges), aspect) - std::begin(kBinEdges));
 }
 
-}  // namespace
-
-void measure_cell_2(const SymmetryCellMesh& cell, Statistics& statistics) {
-  const FullMeshView full(cell);
+void count(const SymmetryCellMesh& cell, const FullMeshView& full, Statistics& statistics) {
   Statistics::Cell& c = statistics.cell;
   c = {};
   c.elements = cell.element_count();
@@ -30,7 +31,14 @@ void measure_cell_2(const SymmetryCellMesh& cell, Statistics& statistics) {
   c.symmetry_facets = cell.lower_facets.size() / static_cast<std::size_t>(cell.nodes_per_facet);
   statistics.full.elements = static_cast<std::uint64_t>(full.element_count());
   statistics.full.nodes = static_cast<std::uint64_t>(full.node_count());
+}
 
+}  // namespace
+
+void measure_cell_2(const SymmetryCellMesh& cell, Statistics& statistics) {
+  const FullMeshView full(cell);
+  count(cell, full, statistics);
+  Statistics::Cell& c = statistics.cell;
   double smallest = std::numbers::pi, largest = 0;
   const auto stride = static_cast<std::size_t>(cell.nodes_per_element);
   for (std::size_t e = 0; e < cell.element_count(); ++e) {
@@ -59,6 +67,36 @@ void measure_cell_2(const SymmetryCellMesh& cell, Statistics& statistics) {
   }
   c.min_angle_deg = smallest * 180 / std::numbers::pi;
   c.max_angle_deg = largest * 180 / std::numbers::pi;
+}
+
+void measure_cell_3(const SymmetryCellMesh& cell, Statistics& statistics) {
+  const FullMeshView full(cell);
+  count(cell, full, statistics);
+  Statistics::Cell& c = statistics.cell;
+  std::vector<Point3> place(cell.nodes.size());
+  for (std::size_t i = 0; i < place.size(); ++i) place[i] = full.cell_node_position(i);
+
+  TetFigures worst;
+  worst.face_cot_max = worst.dihedral_cot_max = -std::numeric_limits<double>::infinity();
+  worst.face_cot_min = worst.dihedral_cot_min = std::numeric_limits<double>::infinity();
+  const auto stride = static_cast<std::size_t>(cell.nodes_per_element);
+  for (std::size_t at = 0; at < cell.elements.size(); at += stride) {
+    std::array<Point3, 4> p;
+    for (std::size_t i = 0; i < 4; ++i)
+      p[i] = place[static_cast<std::size_t>(cell.elements[at + i])];
+    const TetFigures f = tet_figures(p);
+    c.measure += f.volume;
+    c.max_radius_edge = std::max(c.max_radius_edge, f.radius_edge);
+    ++c.aspect_ratio_histogram[aspect_bin(f.aspect)];
+    worst.face_cot_max = std::max(worst.face_cot_max, f.face_cot_max);
+    worst.face_cot_min = std::min(worst.face_cot_min, f.face_cot_min);
+    worst.dihedral_cot_max = std::max(worst.dihedral_cot_max, f.dihedral_cot_max);
+    worst.dihedral_cot_min = std::min(worst.dihedral_cot_min, f.dihedral_cot_min);
+  }
+  c.min_angle_deg = degrees_of_cotangent(worst.face_cot_max);
+  c.max_angle_deg = degrees_of_cotangent(worst.face_cot_min);
+  c.min_dihedral_deg = degrees_of_cotangent(worst.dihedral_cot_max);
+  c.max_dihedral_deg = degrees_of_cotangent(worst.dihedral_cot_min);
 }
 
 std::uint64_t peak_memory_bytes() {

@@ -57,6 +57,11 @@ struct Statistics {
 
   std::vector<ExemptCount> exempt;
 
+  // What was mended in a surface, in words that name how many and where; empty: nothing.
+  std::vector<std::string> repairs;
+  // Solids: whether every unconstrained face is locally Delaunay.
+  bool delaunay = true;
+
   struct TimingsMs {
     double parse = 0;  // filled in by the caller that parsed
     double symmetry = 0;

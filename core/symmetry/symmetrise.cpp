@@ -67,7 +67,8 @@ class Symmetriser {
         context_(context),
         prepared_(prepared),
         index_(positions_of(prepared)),
-        tolerance_(options.symmetry_tolerance_rel * prepared.diameter),
+        tolerance_(options.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel) *
+                   prepared.diameter),
         detector_(prepared, index_, tolerance_, options.center ? &*options.center : nullptr) {}
 
   Result<SymmetricPslg> run(std::vector<FoldFit>* ladder) {
@@ -101,7 +102,7 @@ class Symmetriser {
     const FoldFit fit = detector_.fit(fold);
     auto result = close(fold, fit.center);
     if (result || result.error().code != ErrorCode::kNotSymmetric) return result;
-    const double limit = options_.symmetry_tolerance_rel;
+    const double limit = options_.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel);
     std::string message = "the model is not " + std::to_string(fold) + "-fold symmetric about " +
                           describe_point(fit.center) + " within the tolerance of " +
                           describe_rounded(limit) + " of its diameter: ";

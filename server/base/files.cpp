@@ -12,6 +12,8 @@
 namespace symcell::server {
 namespace {
 
+constexpr std::size_t kPieceBytes = 64UL * 1024;
+
 [[noreturn]] void throw_errno(const std::string& what, const std::filesystem::path& path) {
   throw std::system_error(errno, std::generic_category(), what + " " + path.string());
 }
@@ -79,6 +81,23 @@ void FileWriter::keep() {
 void FileWriter::close() {
   ::close(descriptor_);
   descriptor_ = -1;
+}
+
+FileReader::FileReader(const std::filesystem::path& path)
+    : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)), buffer_(kPieceBytes, '\0') {
+  if (descriptor_ < 0) throw_errno("cannot open", path);
+}
+
+FileReader::~FileReader() {
+  ::close(descriptor_);
+}
+
+std::string_view FileReader::next() {
+  while (true) {
+    const ssize_t got = ::read(descriptor_, buffer_.data(), buffer_.size());
+    if (got >= 0) return std::string_view(buffer_).substr(0, static_cast<std::size_t>(got));
+    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "cannot read");
+  }
 }
 
 MappedFile::MappedFile(const std::filesystem::path& path) {

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace symcell::server {
@@ -36,6 +37,22 @@ class FileWriter {
   std::filesystem::path path_;
   int descriptor_ = -1;
   std::size_t size_ = 0;
+};
+
+// A file read from the front in pieces: unlike a mapped one it takes no memory however large it is.
+class FileReader {
+ public:
+  explicit FileReader(const std::filesystem::path& path);
+  ~FileReader();
+  FileReader(const FileReader&) = delete;
+  FileReader& operator=(const FileReader&) = delete;
+
+  // The next piece, valid until the next call; empty at the end.
+  [[nodiscard]] std::string_view next();
+
+ private:
+  int descriptor_ = -1;
+  std::string buffer_;
 };
 
 // The bytes of a file, read-only. The file must not be truncated meanwhile.

@@ -125,6 +125,12 @@ void Metrics::append_gauge_header(std::string& text, std::string_view name, std:
   append_header(text, name, help, "gauge");
 }
 
+void Metrics::append_counter_header(std::string& text,
+                                    std::string_view name,
+                                    std::string_view help) {
+  append_header(text, name, help, "counter");
+}
+
 void Metrics::append_sample(std::string& text,
                             std::string_view name,
                             std::initializer_list<MetricLabel> labels,

@@ -30,6 +30,9 @@ class Metrics {
 
   // One sample of a value read elsewhere, with its header lines.
   static void append_gauge_header(std::string& text, std::string_view name, std::string_view help);
+  static void append_counter_header(std::string& text,
+                                    std::string_view name,
+                                    std::string_view help);
   static void append_sample(std::string& text,
                             std::string_view name,
                             std::initializer_list<MetricLabel> labels,

@@ -3,20 +3,21 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "api/schema/options.hpp"
 #include "api/schema/statistics_json.hpp"
-#include "core/model/validate_pslg.hpp"
-#include "core/symmetry/symmetrise.hpp"
+#include "core/mesh_model.hpp"
 #include "server/cli/commands.hpp"
-#include "server/cli/interrupt.hpp"
 #include "server/cli/model_input.hpp"
 #include "server/cli/option_flags.hpp"
 #include "server/cli/report_error.hpp"
+#include "server/cli/supervised_run.hpp"
 
 namespace symcell::cli {
 namespace {
 
 constexpr const char* kExamples = R"(Examples:
   symcell inspect part.json
+  symcell inspect part.stl | jq .folds
   symcell inspect part.poly --symmetry-tolerance 1e-4 | jq .fold
 )";
 
@@ -26,16 +27,15 @@ struct InspectArguments {
   OptionFlags flags;
 };
 
-Result<void> inspect(const InspectArguments& arguments) {
-  const Result<MeshOptions> options = arguments.flags.options();
-  if (!options) return tl::unexpected(options.error());
-  const Result<Pslg> model = read_model_file(arguments.model);
+Result<void> inspect(const InspectArguments& arguments,
+                     MeshOptions options,
+                     ExecutionContext& context) {
+  const Result<Model> model = read_model_file(arguments.model);
   if (!model) return tl::unexpected(model.error());
-  ExecutionContext context;
-  context.set_time_limit(options->time_limit_s);
-  const InterruptCancels interrupt(context);
-  if (auto valid = validate_pslg(*model, context); !valid) return valid;
-  const Result<PslgInspection> found = inspect_pslg(*model, *options, context);
+  const Result<MeshOptions> fitting = options_for(kind_of(*model), std::move(options));
+  if (!fitting) return tl::unexpected(fitting.error());
+  context.set_time_limit(fitting->time_limit_s);
+  const Result<Inspection> found = inspect_model(*model, *fitting, context);
   if (!found) return tl::unexpected(found.error());
   std::printf("%s\n", inspection_to_json(*found).dump(2).c_str());
   if (std::fflush(stdout) != 0) {
@@ -44,13 +44,21 @@ Result<void> inspect(const InspectArguments& arguments) {
   return {};
 }
 
+Result<void> run(const InspectArguments& arguments) {
+  const Result<MeshOptions> options = arguments.flags.options();
+  if (!options) return tl::unexpected(options.error());
+  return run_supervised(
+      [&](ExecutionContext& context) { return inspect(arguments, *options, context); },
+      {.time_limit_s = options->time_limit_s, .memory_bytes = options->memory_limit_bytes});
+}
+
 }  // namespace
 
 void add_inspect_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "inspect", "Tell a model's symmetry and size as JSON on standard output; mesh nothing");
   const auto arguments = std::make_shared<InspectArguments>();
-  command->add_option("MODEL", arguments->model, "PSLG JSON or Triangle .poly; - : standard input")
+  command->add_option("MODEL", arguments->model, "the model, planar or solid; - : standard input")
       ->required()
       ->option_text(" ");
   arguments->flags.add_to(*command);
@@ -58,7 +66,7 @@ void add_inspect_command(CLI::App& app, int& exit_code) {
                     "errors as problem documents (JSON) on standard error");
   command->footer(kExamples);
   command->callback([arguments, &exit_code] {
-    const Result<void> done = inspect(*arguments);
+    const Result<void> done = run(*arguments);
     exit_code = done ? 0 : report_error(done.error(), arguments->json_errors);
   });
 }

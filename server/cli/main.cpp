@@ -10,6 +10,7 @@
 #include "server/cli/report_error.hpp"
 #if SYMCELL_HAS_SERVE
 #include "server/cli/serve_command.hpp"
+#include "server/cli/worker_command.hpp"
 #endif
 
 namespace {
@@ -22,7 +23,7 @@ bool has_command(CLI::App& app, const std::string& name) {
 
 int run(int argc, char** argv) {
   CLI::App app(
-      "Meshes one symmetry cell of an n-fold rotationally symmetric planar model, from "
+      "Meshes one symmetry cell of an n-fold rotationally symmetric model, planar or solid, from "
       "which the full mesh is n rotated copies.");
   app.name("symcell");
   app.set_version_flag("--version", std::string("symcell ") + std::string(symcell::version()));
@@ -33,6 +34,7 @@ int run(int argc, char** argv) {
   symcell::cli::add_inspect_command(app, exit_code);
 #if SYMCELL_HAS_SERVE
   symcell::add_serve_command(app, exit_code);
+  symcell::add_worker_command(app, exit_code);
 #endif
   symcell::cli::add_verify_command(app, exit_code);
   // CLI11 would only say that a subcommand is missing.

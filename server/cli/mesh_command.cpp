@@ -9,26 +9,29 @@
 #include <optional>
 
 #include "api/formats/mesh_writer.hpp"
+#include "api/schema/options.hpp"
 #include "api/schema/statistics_json.hpp"
-#include "core/mesh_pslg.hpp"
+#include "core/mesh_model.hpp"
 #include "server/cli/atomic_output.hpp"
 #include "server/cli/commands.hpp"
-#include "server/cli/interrupt.hpp"
 #include "server/cli/model_input.hpp"
 #include "server/cli/option_flags.hpp"
-#include "server/cli/progress_bar.hpp"
 #include "server/cli/report_error.hpp"
+#include "server/cli/supervised_run.hpp"
 
 namespace symcell::cli {
 namespace {
 
 constexpr const char* kExamples =
     R"(Formats, from the ending or --format: vtu (ParaView), json, msh (Gmsh 4.1 with the periodic
-bounds), svg (a picture). Lengths and areas are in the model's own units, angles in degrees.
+bounds), svg (a picture, planar models), stl (the boundary, solids). Lengths, areas and volumes are
+in the model's own units, angles in degrees.
 
 Examples:
   symcell mesh gear.json --cell cell.vtu --full full.vtu --stats stats.json
   symcell mesh gear.poly --fold 17 --min-angle 33 --max-area 0.1 --cell cell.msh
+  symcell mesh part.stl --fold 8 --max-volume 2 --cell cell.vtu --full full.vtu
+  symcell mesh nut.json --axis-origin 0,0,0 --axis-direction 0,0,1 --cell cell.vtu
   cat flange.json | symcell mesh - --max-edge 2 --full - --format json | jq .fold
 
 Exit status: 0 done, 1 meshing failed, 2 wrong usage, 3 the model is not acceptable,
@@ -66,15 +69,18 @@ Result<MeshFormat> output_format(const std::string& path, const std::string& for
   if (const std::optional<MeshFormat> found = mesh_format_from_name(name)) return *found;
   const std::string whose = format.empty() ? "the ending of " + path : "--format " + format;
   return fail(ErrorCode::kBadOption,
-              whose + " names no format for meshes; take vtu, json, msh or svg");
+              whose + " names no format for meshes; take vtu, json, msh, svg or stl");
 }
 
 Result<WriteOptions> write_options(const std::string& encoding) {
   WriteOptions options;
   if (encoding == "zlib") options.vtu_encoding = VtuEncoding::kAppendedZlib;
-  if (encoding == "ascii") options.vtu_encoding = VtuEncoding::kAscii;
+  if (encoding == "ascii") {
+    options.vtu_encoding = VtuEncoding::kAscii;
+    options.stl_ascii = true;
+  }
   if (encoding == "raw" || encoding == "zlib" || encoding == "ascii") return options;
-  return fail(ErrorCode::kBadOption, "--vtu-encoding must be raw, zlib or ascii, not " + encoding);
+  return fail(ErrorCode::kBadOption, "--encoding must be raw, zlib or ascii, not " + encoding);
 }
 
 struct MeshOutput {
@@ -91,21 +97,31 @@ class MeshRun {
   Result<void> run() {
     auto done = prepare();
     if (!done) return done;
-    const InterruptCancels interrupt(context_);
-    ProgressBar bar(context_, !arguments_.quiet);
-    auto outcome = mesh();
-    if (outcome) done = write(*outcome);
-    bar.stop();
-    if (!outcome) return tl::unexpected(outcome.error());
-    // A sink that stops for a signal looks like a failed write.
-    if (!done && context_.cancelled()) {
-      return fail(ErrorCode::kCancelled, "cancelled while writing; no output was left");
-    }
+    done = run_supervised(
+        [this](ExecutionContext& context) {
+          context_ = &context;
+          return mesh_and_write();
+        },
+        {.time_limit_s = options_.time_limit_s,
+         .memory_bytes = options_.memory_limit_bytes,
+         .progress_bar = !arguments_.quiet});
     if (!done) return done;
     return commit();
   }
 
  private:
+  // In the child process: what it does to this object is not seen by commit(), but for the files.
+  Result<void> mesh_and_write() {
+    auto outcome = mesh();
+    if (!outcome) return tl::unexpected(outcome.error());
+    auto done = write(*outcome);
+    // A sink that stops for a signal looks like a failed write.
+    if (!done && context_->cancelled()) {
+      return fail(ErrorCode::kCancelled, "cancelled while writing; no output was left");
+    }
+    return done;
+  }
+
   Result<void> prepare() {
     const Result<MeshOptions> options = arguments_.flags.options();
     if (!options) return tl::unexpected(options.error());
@@ -136,24 +152,34 @@ class MeshRun {
   }
 
   Result<MeshOutcome> mesh() {
-    context_.set_time_limit(options_.time_limit_s);
-    context_.set_max_elements(options_.max_elements);
+    context_->set_time_limit(options_.time_limit_s);
+    context_->set_max_elements(options_.max_elements);
     const Clock::time_point start = Clock::now();
-    const Result<Pslg> model = read_model_file(arguments_.model);
+    const Result<Model> model = read_model_file(arguments_.model);
     if (!model) return tl::unexpected(model.error());
     const double parse_ms = milliseconds_since(start);
-    Result<MeshOutcome> outcome = mesh_pslg(*model, options_, context_);
+    kind_ = kind_of(*model);
+    const Result<MeshOptions> fitting = options_for(kind_, options_);
+    if (!fitting) return tl::unexpected(fitting.error());
+    options_ = *fitting;
+    for (const MeshOutput& output : meshes_) {
+      // Told by the model, but it is the command line that asks for it.
+      const auto fits = check_mesh_format(output.format, is_planar(kind_) ? 2 : 3);
+      if (!fits) return fail(ErrorCode::kBadOption, fits.error().message);
+    }
+    Result<MeshOutcome> outcome = mesh_model(*model, options_, *context_);
     if (outcome) outcome->statistics.timings_ms.parse = parse_ms;
     return outcome;
   }
 
   Result<void> write(MeshOutcome& outcome) {
+    context_->report(Phase::kWrite, 0.99, outcome.mesh.element_count(), 1);
     Statistics::TimingsMs& timings = outcome.statistics.timings_ms;
     for (MeshOutput& output : meshes_) {
       const Clock::time_point start = Clock::now();
       const Sink file = output.file.sink();
       const Sink sink = [&](std::string_view piece) {
-        return !context_.cancelled() && file(piece);
+        return !context_->cancelled() && file(piece);
       };
       auto written = write_mesh(outcome.mesh, output.part, output.format, write_options_, sink);
       if (!written) return written;
@@ -164,7 +190,7 @@ class MeshRun {
     outcome.statistics.peak_memory_bytes =
         std::max(outcome.statistics.peak_memory_bytes, peak_memory());
     if (!statistics_) return {};
-    const std::string text = statistics_to_json(outcome.statistics, options_).dump(2) + "\n";
+    const std::string text = statistics_to_json(outcome.statistics, options_, kind_).dump(2) + "\n";
     if (statistics_->sink()(text)) return {};
     return fail(ErrorCode::kWriteFailed, "the statistics could not be written");
   }
@@ -179,10 +205,11 @@ class MeshRun {
   const MeshArguments& arguments_;
   Clock::time_point start_ = Clock::now();
   MeshOptions options_;
+  ModelKind kind_ = ModelKind::kPslg;  // of the model, once it is read
   WriteOptions write_options_;
   std::vector<MeshOutput> meshes_;
   std::optional<AtomicOutput> statistics_;
-  ExecutionContext context_;
+  ExecutionContext* context_ = nullptr;
 };
 
 }  // namespace
@@ -191,7 +218,7 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "mesh", "Mesh one model: its symmetry cell, the full mesh, the statistics");
   const auto arguments = std::make_shared<MeshArguments>();
-  command->add_option("MODEL", arguments->model, "PSLG JSON or Triangle .poly; - : standard input")
+  command->add_option("MODEL", arguments->model, "the model, planar or solid; - : standard input")
       ->required()
       ->option_text(" ");
   const auto add = [&](const char* name, std::string& target, const char* help, const char* value) {
@@ -201,8 +228,10 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
   add("--full", arguments->full, "the full mesh, all n sectors", "FILE");
   add("--stats", arguments->stats, "the statistics, JSON; the default if no output is named",
       "FILE");
-  add("--format", arguments->format, "of both meshes, whatever the endings", "vtu|json|msh|svg");
-  add("--vtu-encoding", arguments->encoding, "of VTU files [raw]", "raw|zlib|ascii");
+  add("--format", arguments->format, "of both meshes, whatever the endings",
+      "vtu|json|msh|svg|stl");
+  add("--encoding,--vtu-encoding", arguments->encoding, "of VTU files [raw]; of STL ascii or not",
+      "raw|zlib|ascii");
   arguments->flags.add_to(*command);
   command->add_flag("--json-errors", arguments->json_errors,
                     "errors as problem documents (JSON) on standard error");

@@ -48,7 +48,7 @@ Result<std::string> read_input(const std::string& path) {
   return read_up_to(path, kMaxModelBytes);
 }
 
-Result<Pslg> read_model_file(const std::string& path) {
+Result<Model> read_model_file(const std::string& path) {
   const Result<std::string> bytes = read_input(path);
   if (!bytes) return tl::unexpected(bytes.error());
   return read_model(*bytes, model_format_from_name(path));

@@ -5,7 +5,7 @@
 
 #include "core/base/error.hpp"
 #include "core/cells/mesh_data.hpp"
-#include "core/model/pslg.hpp"
+#include "core/model/model.hpp"
 
 namespace symcell::cli {
 
@@ -13,7 +13,7 @@ namespace symcell::cli {
 [[nodiscard]] Result<std::string> read_input(const std::string& path);
 
 // A model; its format by the file's ending, else by content.
-[[nodiscard]] Result<Pslg> read_model_file(const std::string& path);
+[[nodiscard]] Result<Model> read_model_file(const std::string& path);
 
 // A VTU mesh, also gzip'd.
 [[nodiscard]] Result<MeshData> read_mesh_file(const std::string& path);

@@ -24,7 +24,7 @@ void OptionFlags::add_to(CLI::App& command) {
       option->type_name(std::string(info.metavar));
       option->multi_option_policy(CLI::MultiOptionPolicy::Throw);
     }
-    option->group(info.solids_only ? "" : "Meshing");
+    option->group("Meshing");
   }
 }
 

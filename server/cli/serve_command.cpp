@@ -1,6 +1,8 @@
 #include "server/cli/serve_command.hpp"
 
+#include <fcntl.h>
 #include <pthread.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -16,7 +18,7 @@
 #include "server/base/files.hpp"
 #include "server/base/log.hpp"
 #include "server/http/service.hpp"
-#include "server/jobs/local_engine.hpp"
+#include "server/worker/worker_engine.hpp"
 
 namespace symcell {
 namespace {
@@ -37,9 +39,12 @@ struct ServeFlags {
   std::size_t workers = std::max(1U, std::thread::hardware_concurrency());
   std::size_t http_threads = 16;
   std::size_t queue_limit = 100;
-  std::size_t max_body_bytes = 128UL << 20U;
+  std::size_t max_body_bytes = 512UL << 20U;
   std::uint64_t max_elements = 10'000'000;
   double time_limit_s = 3600;
+  std::uint64_t worker_memory_bytes = std::uint64_t{4} << 30U;
+  std::uint64_t cpu_limit_s = 0;
+  std::size_t worker_jobs = 200;
   double grace_s = 10;
   std::string log_level = "info";
   std::string log_format = "text";
@@ -116,6 +121,27 @@ void add_job_flags(CLI::App& command, ServeFlags& flags) {
       ->capture_default_str();
 }
 
+void add_worker_flags(CLI::App& command, ServeFlags& flags) {
+  command
+      .add_option("--worker-memory", flags.worker_memory_bytes,
+                  "Bytes that one worker process may take, also as 4GiB; 0: no limit")
+      ->envname("SYMCELL_WORKER_MEMORY")
+      ->transform(CLI::AsSizeValue(false))
+      ->default_str("4GiB");
+  command
+      .add_option("--cpu-limit", flags.cpu_limit_s,
+                  "Seconds of processor time a job may take; 0: as many as --time-limit")
+      ->envname("SYMCELL_CPU_LIMIT")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      .add_option("--worker-jobs", flags.worker_jobs,
+                  "Jobs that one worker process runs before a fresh one replaces it")
+      ->envname("SYMCELL_WORKER_JOBS")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+}
+
 void add_retention_flags(CLI::App& command, ServeFlags& flags) {
   command
       .add_option("--retention-hours", flags.retention_hours,
@@ -177,6 +203,15 @@ void write_port_file(const std::string& path, int port) {
   file.commit_as(std::filesystem::absolute(path));
 }
 
+server::WorkerSettings worker_settings_of(const ServeFlags& flags) {
+  server::WorkerSettings settings;
+  settings.pool.ahead = flags.workers + 1;  // one for an inspection
+  settings.pool.requests_per_worker = flags.worker_jobs;
+  settings.memory_bytes = flags.worker_memory_bytes;
+  settings.cpu_seconds = flags.cpu_limit_s;
+  return settings;
+}
+
 sigset_t stop_signals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -185,7 +220,37 @@ sigset_t stop_signals() {
   return signals;
 }
 
+// A parent may have closed standard input, output and error. Their numbers must not go to other
+// files: a worker process gets its connection by them.
+void open_standard_streams() {
+  int descriptor = 0;
+  do {
+    descriptor = ::open("/dev/null", O_RDWR);
+  } while (descriptor >= 0 && descriptor <= STDERR_FILENO);
+  if (descriptor >= 0) ::close(descriptor);
+}
+
+std::uint64_t machine_memory_bytes() {
+  const long pages = ::sysconf(_SC_PHYS_PAGES);
+  const long page_bytes = ::sysconf(_SC_PAGESIZE);
+  return pages > 0 && page_bytes > 0
+             ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes)
+             : 0;
+}
+
+// The kernel kills where memory runs out, and does not always choose the culprit.
+void warn_of_memory(const ServeFlags& flags, Logger& logger) {
+  const std::uint64_t machine = machine_memory_bytes();
+  const bool fits = flags.worker_memory_bytes <= machine / flags.workers;
+  if (machine == 0 || (flags.worker_memory_bytes != 0 && fits)) return;
+  logger.warning("workers_may_exceed_memory",
+                 {{"workers", static_cast<std::int64_t>(flags.workers)},
+                  {"worker_memory", static_cast<std::int64_t>(flags.worker_memory_bytes)},
+                  {"machine_memory", static_cast<std::int64_t>(machine)}});
+}
+
 int serve(const ServeFlags& flags) {
+  open_standard_streams();
   Logger logger(*server::log_level_from_name(flags.log_level),
                 flags.log_format == "json" ? LogFormat::kJson : LogFormat::kText);
   const server::ServiceSettings settings = settings_of(flags);
@@ -197,7 +262,8 @@ int serve(const ServeFlags& flags) {
   const sigset_t signals = stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
-  server::LocalEngine engine;
+  warn_of_memory(flags, logger);
+  server::WorkerEngine engine(worker_settings_of(flags), logger);
   auto service = std::make_unique<server::Service>(settings, engine, logger);
   const int port = service->start();
   write_port_file(flags.port_file, port);
@@ -230,6 +296,7 @@ void add_serve_command(CLI::App& app, int& exit_code) {
   const auto flags = std::make_shared<ServeFlags>();
   add_network_flags(*command, *flags);
   add_job_flags(*command, *flags);
+  add_worker_flags(*command, *flags);
   add_retention_flags(*command, *flags);
   add_log_flags(*command, *flags);
   command->callback([flags, &exit_code] {

@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "core/cells/verify_mesh.hpp"
+#include "core/model/validate_plc.hpp"
 #include "core/model/validate_pslg.hpp"
+#include "core/surface/clean_surface.hpp"
 #include "core/symmetry/symmetrise.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/model_input.hpp"
@@ -15,7 +17,8 @@ namespace symcell::cli {
 namespace {
 
 constexpr const char* kExamples =
-    R"(Without --full the full mesh is restored from the cell's own pairs and checked.
+    R"(Without --full the full mesh is restored from the cell's own pairs and checked; its regions then
+repeat with the sectors, so give --full for a model that was meshed with --ignore-markers.
 Exit status: 0 all checks hold, 1 a check fails, 2 wrong usage, 3 a file is not acceptable.
 
 Examples:
@@ -28,7 +31,7 @@ struct VerifyArguments {
   std::string full;
   std::string model;
   double tolerance = VerifyOptions{}.tolerance_rel;
-  double model_tolerance = VerifyOptions{}.model_tolerance_rel;
+  std::optional<double> model_tolerance;
   bool json = false;
   bool quiet = false;
   bool json_errors = false;
@@ -43,15 +46,26 @@ const char* status_name(Check::Status status) {
   return "fail";
 }
 
-// The model's area at the mesh's own fold; nothing where the model cannot be measured.
-std::optional<double> model_area(const Pslg& model, std::int32_t fold) {
+// The model's area at the mesh's own fold, or its volume; nothing where it cannot be measured.
+std::optional<double> model_measure(const Model& model, std::int32_t fold) {
   ExecutionContext context;
-  if (!validate_pslg(model, context)) return std::nullopt;
+  if (const auto* surface = std::get_if<TriangleSurface>(&model)) {
+    const Result<CleanSurface> clean = clean_surface(*surface, context);
+    if (!clean || clean->problem) return std::nullopt;
+    return clean->volume;
+  }
+  if (const auto* plc = std::get_if<Plc>(&model)) {
+    const Result<ValidPlc> valid = validate_plc(*plc, context);
+    if (!valid) return std::nullopt;
+    return valid->cells.volume;
+  }
+  const auto* pslg = std::get_if<Pslg>(&model);
+  if (pslg == nullptr || !validate_pslg(*pslg, context)) return std::nullopt;
   MeshOptions options;
   options.fold = fold;
   options.ignore_markers = true;
   options.symmetry_tolerance_rel = 1e-3;
-  const Result<PslgInspection> found = inspect_pslg(model, options, context);
+  const Result<PslgInspection> found = inspect_pslg(*pslg, options, context);
   if (!found) return std::nullopt;
   return found->area;
 }
@@ -84,15 +98,15 @@ Result<bool> verify(const VerifyArguments& arguments) {
     if (!read) return tl::unexpected(read.error());
     full = std::move(*read);
   }
-  std::optional<Pslg> model;
+  std::optional<Model> model;
   VerifyOptions options;
   options.tolerance_rel = arguments.tolerance;
   options.model_tolerance_rel = arguments.model_tolerance;
   if (!arguments.model.empty()) {
-    Result<Pslg> read = read_model_file(arguments.model);
+    Result<Model> read = read_model_file(arguments.model);
     if (!read) return tl::unexpected(read.error());
     model = std::move(*read);
-    options.model_area = model_area(*model, cell->fold);
+    options.model_measure = model_measure(*model, cell->fold);
   }
   const VerifyReport report =
       verify_mesh(*cell, full ? &*full : nullptr, model ? &*model : nullptr, options);
@@ -110,7 +124,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->required()
       ->option_text(" ");
   command->add_option("--full", arguments->full, "the full mesh, .vtu")->type_name("FILE");
-  command->add_option("--model", arguments->model, "the model: PSLG JSON or .poly")
+  command->add_option("--model", arguments->model, "the model, as it was meshed")
       ->type_name("FILE");
   command
       ->add_option("--tolerance", arguments->tolerance,
@@ -118,8 +132,9 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->type_name("T")
       ->check(CLI::Range(0.0, 0.1));
   command
-      ->add_option("--model-tolerance", arguments->model_tolerance,
-                   "of nodes against the model, a share of the diameter [1e-6]")
+      ->add_option(
+          "--model-tolerance", arguments->model_tolerance,
+          "of nodes against the model, a share of the diameter\n[1e-6; STL and its like 1e-3]")
       ->type_name("T")
       ->check(CLI::Range(0.0, 0.1));
   command->add_flag("--json", arguments->json, "the report as JSON");

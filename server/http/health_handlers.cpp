@@ -26,6 +26,11 @@ void show_readiness(Call& call, ServiceContext& context) {
     respond_problem(call, ServiceProblem::kOverloaded, "the job store does not answer");
     return;
   }
+  if (const std::string fault = context.jobs.engine().fault(); !fault.empty()) {
+    context.logger.error("engine_unhealthy", {{"what", std::string_view(fault)}});
+    respond_problem(call, ServiceProblem::kOverloaded, "no worker process can be started");
+    return;
+  }
   respond_text(call, "ready\n", "text/plain; charset=utf-8");
 }
 
@@ -57,6 +62,7 @@ void show_metrics(Call& call, ServiceContext& context) {
                static_cast<double>(context.requests_in_flight.load()));
   append_gauge(text, "symcell_streams_open", "Event streams and waits for a job.",
                static_cast<double>(context.streams.taken()));
+  context.jobs.engine().append_metrics(text);
   respond_text(call, text, "text/plain; version=0.0.4; charset=utf-8");
 }
 

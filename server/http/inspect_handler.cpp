@@ -1,7 +1,6 @@
 // POST /v1/inspect: what detection finds, at once, within a small limit of size and time.
 #include <algorithm>
 
-#include "server/base/files.hpp"
 #include "server/http/call.hpp"
 #include "server/http/model_request.hpp"
 #include "server/http/problem_response.hpp"
@@ -11,8 +10,8 @@
 namespace symcell::server {
 namespace {
 
-constexpr std::size_t kMaxInspectBytes = 16UL << 20U;
-constexpr double kMaxInspectSeconds = 10;
+constexpr std::size_t kMaxInspectBytes = 64UL << 20U;
+constexpr double kMaxInspectSeconds = 30;
 
 void inspect(Call& call, ServiceContext& context) {
   if (context.jobs.stopping()) {
@@ -20,11 +19,11 @@ void inspect(Call& call, ServiceContext& context) {
     respond_problem(call, ServiceProblem::kStopping, "the server is stopping");
     return;
   }
-  const auto request = receive_model_request(call, context.jobs.files(),
-                                             std::min(kMaxInspectBytes, context.max_body_bytes));
+  const auto request =
+      receive_model_request(call, context, std::min(kMaxInspectBytes, context.max_body_bytes));
   if (!request) return;
-  // An inspection works in the HTTP thread; the places keep threads and processors for others. Not
-  // taken before the body is here: slow senders would hold them all.
+  // An inspection holds the HTTP thread and a worker process; the places keep threads and
+  // processors for others. Not taken before the body is here: slow senders would hold them all.
   const Slots::Slot place = context.inspections.try_take();
   if (!place) {
     respond_problem(call, ServiceProblem::kTooManyStreams,
@@ -32,10 +31,11 @@ void inspect(Call& call, ServiceContext& context) {
     return;
   }
   ExecutionContext execution;
-  execution.set_time_limit(std::min(kMaxInspectSeconds, request->options.time_limit_s));
-  const MappedFile model(request->model.path());
+  MeshOptions options = request->options;
+  options.time_limit_s = std::min(kMaxInspectSeconds, options.time_limit_s);
+  execution.set_time_limit(options.time_limit_s);
   const auto document =
-      context.jobs.engine().inspect(model.bytes(), request->format, request->options, execution);
+      context.jobs.engine().inspect(request->model.path(), request->format, options, execution);
   if (!document) {
     respond_error(call, document.error(), "/model");
     return;

@@ -79,7 +79,7 @@ Json job_document(const Job& job, JobService& jobs, JobDetail detail) {
   document["started_at"] = time_or_null(job.started_ms);
   document["finished_at"] = time_or_null(job.finished_ms);
   document["progress"] = progress_document(job, jobs);
-  document["model"] = {{"format", job.model_format == ModelFormat::kPoly ? "poly" : "pslg_json"},
+  document["model"] = {{"format", model_format_info(job.model_format).name},
                        {"name", job.model_name.empty() ? Json(nullptr) : Json(job.model_name)},
                        {"bytes", job.model_bytes}};
   document["options"] = options_of(job);

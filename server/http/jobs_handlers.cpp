@@ -71,7 +71,7 @@ void submit_job(Call& call, ServiceContext& context) {
   if (context.jobs.stopping()) return respond_stopping(call);
   if (key.empty() && context.jobs.queue_is_full()) return respond_queue_full(call, context);
 
-  const auto request = receive_model_request(call, context.jobs.files(), context.max_body_bytes);
+  const auto request = receive_model_request(call, context, context.max_body_bytes);
   if (!request) return;
   const SubmitOutcome outcome = context.jobs.submit(
       {request->model.path(), request->format, request->model_name, request->options, key});

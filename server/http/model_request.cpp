@@ -6,12 +6,14 @@
 #include <utility>
 #include <vector>
 
+#include "api/formats/model_format.hpp"
 #include "api/schema/options.hpp"
 #include "server/base/files.hpp"
 #include "server/http/call.hpp"
 #include "server/http/header_values.hpp"
 #include "server/http/json_envelope.hpp"
 #include "server/http/problem_response.hpp"
+#include "server/http/service_context.hpp"
 
 namespace symcell::server {
 namespace {
@@ -75,12 +77,6 @@ std::string safe_name(const std::string& file_name) {
   return name.substr(0, 200);
 }
 
-ModelFormat guess_of_readable(std::string_view model) {
-  const std::size_t first = model.find_first_not_of(" \t\r\n");
-  const bool json = first != std::string_view::npos && model[first] == '{';
-  return json ? ModelFormat::kPslgJson : ModelFormat::kPoly;
-}
-
 // Everything the three forms have in common once model and options are apart.
 struct Parts {
   ArrivedFile model;
@@ -90,20 +86,24 @@ struct Parts {
   std::string pointer_prefix;
 };
 
-std::optional<ModelRequest> parse_parts(Call& call, Parts parts) {
+std::optional<ModelRequest> parse_parts(Call& call, ServiceContext& context, Parts parts) {
   const auto options = parse_options(call, parts.options);
   if (!options) {
     respond_error(call, options.error(), "");
     return std::nullopt;
   }
-  const MappedFile model(parts.model.path());
-  const auto parsed = read_model(model.bytes(), parts.format);
-  if (!parsed) {
-    respond_error(call, parsed.error(), parts.pointer_prefix);
+  ExecutionContext execution;
+  const auto format = context.jobs.engine().recognise(parts.model.path(), parts.format, execution);
+  if (!format) {
+    respond_error(call, format.error(), parts.pointer_prefix);
     return std::nullopt;
   }
-  const ModelFormat format = parts.format.value_or(guess_of_readable(model.bytes()));
-  return ModelRequest{std::move(parts.model), format, safe_name(parts.name), *options};
+  const auto fitting = options_for(model_format_info(*format).kind, *options);
+  if (!fitting) {
+    respond_error(call, fitting.error(), "");
+    return std::nullopt;
+  }
+  return ModelRequest{std::move(parts.model), *format, safe_name(parts.name), *fitting};
 }
 
 std::optional<Parts> receive_envelope(Call& call, const JobFiles& files, std::size_t max_bytes) {
@@ -153,8 +153,9 @@ std::optional<Parts> receive_raw(Call& call,
 }  // namespace
 
 std::optional<ModelRequest> receive_model_request(Call& call,
-                                                  const JobFiles& files,
+                                                  ServiceContext& context,
                                                   std::size_t max_body_bytes) {
+  const JobFiles& files = context.jobs.files();
   const std::string media_type = media_type_of(call.header("Content-Type"));
   std::optional<Parts> parts;
   switch (body_form_of(media_type)) {
@@ -172,7 +173,7 @@ std::optional<ModelRequest> receive_model_request(Call& call,
       return std::nullopt;
   }
   if (!parts) return std::nullopt;
-  return parse_parts(call, std::move(*parts));
+  return parse_parts(call, context, std::move(*parts));
 }
 
 }  // namespace symcell::server

@@ -5,14 +5,14 @@
 #include <optional>
 #include <string>
 
-#include "api/formats/model_reader.hpp"
+#include "api/formats/model_format.hpp"
 #include "core/model/mesh_options.hpp"
 #include "server/http/body_reader.hpp"
-#include "server/jobs/job_files.hpp"
 
 namespace symcell::server {
 
 struct Call;
+struct ServiceContext;
 
 struct ModelRequest {
   ArrivedFile model;
@@ -24,7 +24,7 @@ struct ModelRequest {
 // Reads the body and parses model and options, so that whatever is malformed is told at once.
 // Answers the call itself and returns nullopt where the request is not acceptable.
 [[nodiscard]] std::optional<ModelRequest> receive_model_request(Call& call,
-                                                                const JobFiles& files,
+                                                                ServiceContext& context,
                                                                 std::size_t max_body_bytes);
 
 }  // namespace symcell::server

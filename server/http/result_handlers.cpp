@@ -117,19 +117,26 @@ std::optional<Job> succeeded_job(Call& call, ServiceContext& context) {
 }
 
 // By ?format=, else by Accept.
-std::optional<MeshFormat> mesh_format_of(Call& call) {
+std::optional<MeshFormat> mesh_format_of(Call& call, std::int32_t dimension) {
   if (call.request.has_param("format")) {
     const auto format = mesh_format_from_name(call.parameter("format"));
     if (!format) {
-      respond_problem(call, ServiceProblem::kBadRequest, "format is one of vtu, json, msh, svg");
+      respond_problem(call, ServiceProblem::kBadRequest,
+                      "format is one of vtu, json, msh, svg, stl");
+      return std::nullopt;
+    }
+    const auto fits = check_mesh_format(*format, dimension);
+    if (!fits) {
+      respond_problem(call, ServiceProblem::kNotAcceptable, fits.error().message);
+      return std::nullopt;
     }
     return format;
   }
-  const auto format = mesh_format_from_accept(call.header("Accept"));
+  const auto format = mesh_format_from_accept(call.header("Accept"), dimension);
   if (!format) {
     respond_problem(call, ServiceProblem::kNotAcceptable,
-                    "meshes come as application/vnd.vtk.vtu+xml, application/json, model/x-gmsh "
-                    "and image/svg+xml; or choose by ?format=");
+                    "meshes come as application/vnd.vtk.vtu+xml, application/json, model/x-gmsh, "
+                    "planar ones as image/svg+xml, solids as model/stl; or choose by ?format=");
   }
   return format;
 }
@@ -138,10 +145,19 @@ std::optional<WriteOptions> write_options_of(Call& call) {
   const std::string encoding = call.parameter("encoding");
   if (encoding.empty() || encoding == "raw") return WriteOptions{VtuEncoding::kAppendedRaw};
   if (encoding == "zlib") return WriteOptions{VtuEncoding::kAppendedZlib};
-  if (encoding == "ascii") return WriteOptions{VtuEncoding::kAscii};
+  if (encoding == "ascii") return WriteOptions{VtuEncoding::kAscii, true};
   respond_problem(call, ServiceProblem::kBadRequest,
-                  "encoding (of vtu) is one of raw, zlib, ascii");
+                  "encoding (of vtu; ascii also of stl) is one of raw, zlib, ascii");
   return std::nullopt;
+}
+
+// Errors of the archive are ours: throws.
+std::int32_t dimension_of(const Job& job, const JobFiles& files) {
+  const auto dimension = cell_archive_dimension(MappedFile(files.cell(job.id)).bytes());
+  if (!dimension) {
+    throw std::runtime_error("the archive of " + job.id + ": " + dimension.error().message);
+  }
+  return *dimension;
 }
 
 // The cell is read before the answer begins, so that a damaged archive is an error and no broken
@@ -155,13 +171,14 @@ std::shared_ptr<const SymmetryCellMesh> load_cell(const Job& job, const JobFiles
 void send_mesh(Call& call, ServiceContext& context, MeshPart part) {
   const auto job = succeeded_job(call, context);
   if (!job) return;
-  const auto format = mesh_format_of(call);
+  const auto format = mesh_format_of(call, dimension_of(*job, context.jobs.files()));
   if (!format) return;
   const auto options = write_options_of(call);
   if (!options) return;
   const std::string part_name = part == MeshPart::kCell ? "cell" : "full";
   const std::string format_name(mesh_format_name(*format));
-  const std::string encoding = *format == MeshFormat::kVtu ? call.parameter("encoding") : "";
+  const bool encoded = *format == MeshFormat::kVtu || *format == MeshFormat::kStl;
+  const std::string encoding = encoded ? call.parameter("encoding") : "";
 
   Representation mesh;
   mesh.media_type = mesh_format_media_type(*format);
@@ -181,13 +198,11 @@ void send_mesh(Call& call, ServiceContext& context, MeshPart part) {
 }
 
 Producer file_producer(const std::filesystem::path& path) {
-  // Mapped now: the job may be deleted while its file is on its way.
-  auto file = std::make_shared<MappedFile>(path);
+  // Opened now: the job may be deleted while its file is on its way.
+  auto file = std::make_shared<FileReader>(path);
   return [file = std::move(file)](const PieceSink& sink) {
-    std::string_view rest = file->bytes();
-    while (!rest.empty()) {
-      if (!sink(rest.substr(0, kChunkBytes))) return false;
-      rest.remove_prefix(std::min(kChunkBytes, rest.size()));
+    for (std::string_view piece = file->next(); !piece.empty(); piece = file->next()) {
+      if (!sink(piece)) return false;
     }
     return true;
   };
@@ -213,11 +228,13 @@ void send_model(Call& call, ServiceContext& context) {
     respond_problem(call, ServiceProblem::kNotFound, "there is no such job; it may have expired");
     return;
   }
-  const bool poly = job->model_format == ModelFormat::kPoly;
-  const std::string media_type = poly ? "text/plain; charset=utf-8" : "application/json";
-  if (!check_accepts(call, poly ? "text/plain" : "application/json")) return;
-  respond_representation(call, {media_type, poly ? "model.poly" : "model.json", job->id + "-model",
-                                file_producer(context.jobs.files().model(job->id))});
+  const ModelFormatInfo& format = model_format_info(job->model_format);
+  if (!check_accepts(call, format.media_type)) return;
+  std::string media_type(format.media_type);
+  if (media_type == "text/plain") media_type += "; charset=utf-8";
+  respond_representation(call,
+                         {media_type, "model" + std::string(format.ending), job->id + "-model",
+                          file_producer(context.jobs.files().model(job->id))});
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
-#include <string_view>
 
 #include "api/formats/model_reader.hpp"
 #include "core/base/error.hpp"
@@ -33,11 +33,23 @@ class JobEngine {
   // context.cancel().
   [[nodiscard]] virtual Result<void> run(const EngineJob& job, ExecutionContext& context) = 0;
 
+  // Reads a model and forgets it again: what is malformed is told before there is a job.
+  // `promised`: by name or media type.  Result: what the content turned out to be.  Errors: those
+  // of reading, and limits.
+  [[nodiscard]] virtual Result<ModelFormat> recognise(const std::filesystem::path& model,
+                                                      std::optional<ModelFormat> promised,
+                                                      ExecutionContext& context) = 0;
+
   // The inspection document as JSON text.  Errors: those of reading and of the model, and limits.
-  [[nodiscard]] virtual Result<std::string> inspect(std::string_view model,
+  [[nodiscard]] virtual Result<std::string> inspect(const std::filesystem::path& model,
                                                     ModelFormat format,
                                                     const MeshOptions& options,
                                                     ExecutionContext& context) = 0;
+
+  // Why it can run nothing at present; empty if it can.
+  [[nodiscard]] virtual std::string fault() const { return {}; }
+  // Its own figures in the text format of Prometheus.
+  virtual void append_metrics(std::string& text) const { static_cast<void>(text); }
 };
 
 }  // namespace symcell::server

@@ -36,9 +36,13 @@ int lock_directory(const std::filesystem::path& file) {
 std::string digest_of(const Submission& submission, const std::string& options_json) {
   Sha256 digest;
   digest.append(options_json);
-  digest.append(submission.model_format == ModelFormat::kPoly ? "\npoly\n" : "\npslg\n");
-  const MappedFile model(submission.model);
-  digest.append(model.bytes());
+  digest.append("\n");
+  digest.append(model_format_info(submission.model_format).name);
+  digest.append("\n");
+  FileReader model(submission.model);
+  for (std::string_view piece = model.next(); !piece.empty(); piece = model.next()) {
+    digest.append(piece);
+  }
   return digest.finish();
 }
 
@@ -123,7 +127,9 @@ bool JobService::queue_is_full() const {
 }
 
 SubmitOutcome JobService::submit(const Submission& submission) {
-  const std::string options_json = options_to_json(capped(submission.options)).dump();
+  const std::string options_json =
+      options_to_json(capped(submission.options), model_format_info(submission.model_format).kind)
+          .dump();
   std::optional<IdempotencyKey> key;
   if (!submission.idempotency_key.empty()) {
     key = {submission.idempotency_key, digest_of(submission, options_json)};

@@ -1,4 +1,4 @@
-// The engine that meshes in the server's own process.
+// The engine that meshes in the process that calls it: a worker process, or a test.
 #pragma once
 
 #include "server/jobs/job_engine.hpp"
@@ -8,7 +8,10 @@ namespace symcell::server {
 class LocalEngine final : public JobEngine {
  public:
   [[nodiscard]] Result<void> run(const EngineJob& job, ExecutionContext& context) override;
-  [[nodiscard]] Result<std::string> inspect(std::string_view model,
+  [[nodiscard]] Result<ModelFormat> recognise(const std::filesystem::path& model,
+                                              std::optional<ModelFormat> promised,
+                                              ExecutionContext& context) override;
+  [[nodiscard]] Result<std::string> inspect(const std::filesystem::path& model,
                                             ModelFormat format,
                                             const MeshOptions& options,
                                             ExecutionContext& context) override;

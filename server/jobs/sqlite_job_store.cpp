@@ -47,12 +47,11 @@ constexpr const char* kColumns =
 constexpr const char* kFinished = "('succeeded', 'failed', 'cancelled')";
 
 std::string format_name(ModelFormat format) {
-  return format == ModelFormat::kPoly ? "poly" : "pslg_json";
+  return std::string(model_format_info(format).name);
 }
 
 ModelFormat format_from_name(const std::string& name) {
-  if (name == "poly") return ModelFormat::kPoly;
-  if (name == "pslg_json") return ModelFormat::kPslgJson;
+  if (const auto format = model_format_of_name(name)) return *format;
   throw std::runtime_error("the job database holds an unknown model format: " + name);
 }
 

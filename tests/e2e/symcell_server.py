@@ -15,10 +15,15 @@ import signal
 import subprocess
 import tempfile
 import time
+import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CORPUS = ROOT.parent / "shared" / "corpus"
 PATIENCE_S = 60
+
+
+# Sanitizers need more memory than any limit allows and catch crashes themselves.
+without_sanitizer = unittest.skipIf(os.environ.get("SYMCELL_SANITIZE"), "limits are off under a sanitizer")
 
 
 def binary():
@@ -154,13 +159,22 @@ def square():
             "segments": [[0, 1, 1], [1, 2, 1], [2, 3, 1], [3, 0, 1]]}
 
 
+def box():
+    """A box with a square base: 4-fold about the z axis."""
+    return {"type": "plc",
+            "vertices": [[x, y, z] for z in (0, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))],
+            "facets": [{"polygons": [[0, 3, 2, 1]], "marker": 1}, {"polygons": [[4, 5, 6, 7]], "marker": 2},
+                       *({"polygons": [[i, (i + 1) % 4, (i + 1) % 4 + 4, i + 4]], "marker": 3}
+                         for i in range(4))]}
+
+
 def long_options():
     """Options with which the square keeps a worker busy until it is stopped."""
     return {"max_area": 1e-8, "max_elements": 500_000_000, "fold": 1}
 
 
 def corpus_entries():
-    """Manifest entries of planar inputs that must be refused; None where there is no corpus."""
+    """Manifest entries of inputs that must be refused; None where there is no corpus."""
     manifest = CORPUS / "manifest.json"
     if not manifest.exists():
         return None

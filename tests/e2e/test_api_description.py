@@ -6,7 +6,7 @@ import re
 import unittest
 
 from openapi_check import Description
-from symcell_server import ROOT, Server, long_options, square, until
+from symcell_server import ROOT, Server, box, long_options, square, until
 
 try:
     import yaml
@@ -43,6 +43,7 @@ class ApiDescriptionTest(unittest.TestCase):
         cls.description = Description(yaml.safe_load((ROOT / "openapi.yaml").read_text()))
         cls.server = Server(workers=1, queue_limit=20).start()
         cls.finished = cls.server.finished(cls.server.submit(square())["id"])
+        cls.solid = cls.server.finished(cls.server.submit(box())["id"])
         cls.called = set()
 
     @classmethod
@@ -106,15 +107,9 @@ class ApiDescriptionTest(unittest.TestCase):
 
     def test_results_come_in_every_described_type(self):
         for operation_id in ("getCell", "getFull"):
-            _, _, operation = self.operation(operation_id)
-            for media_type in self.description.resolve(operation["responses"]["200"])["content"]:
-                answer = self.call(operation_id, self.finished["id"], headers={"Accept": media_type},
-                                   status=200)
-                self.assertEqual(answer.headers["Content-Type"].split(";")[0], media_type)
-            for parameter in operation["parameters"]:
-                parameter = self.description.resolve(parameter)
-                for value in parameter["schema"].get("enum", []):
-                    self.call(operation_id, self.finished["id"], f"?{parameter['name']}={value}", status=200)
+            for job, other_kind in ((self.finished, ("model/stl", "stl")),
+                                    (self.solid, ("image/svg+xml", "svg"))):
+                self.call_in_every_type(operation_id, job["id"], other_kind)
             etag = self.call(operation_id, self.finished["id"]).headers["ETag"]
             self.call(operation_id, self.finished["id"], headers={"If-None-Match": etag}, status=304)
             self.call(operation_id, self.finished["id"], "?format=dxf", status=400)
@@ -122,6 +117,20 @@ class ApiDescriptionTest(unittest.TestCase):
         self.call("getStatistics", self.finished["id"], status=200)
         self.call("getModel", self.finished["id"], status=200)
         self.call("followJob", self.finished["id"], status=200)
+
+    def call_in_every_type(self, operation_id, job_id, other_kind):
+        """`other_kind`: what shows only planar meshes, or only solids."""
+        _, _, operation = self.operation(operation_id)
+        for media_type in self.description.resolve(operation["responses"]["200"])["content"]:
+            status = 406 if media_type in other_kind else 200
+            answer = self.call(operation_id, job_id, headers={"Accept": media_type}, status=status)
+            if status == 200:
+                self.assertEqual(answer.headers["Content-Type"].split(";")[0], media_type)
+        for parameter in operation["parameters"]:
+            parameter = self.description.resolve(parameter)
+            for value in parameter["schema"].get("enum", []):
+                self.call(operation_id, job_id, f"?{parameter['name']}={value}",
+                          status=406 if value in other_kind else 200)
 
     def test_unknown_jobs_are_described_problems(self):
         for _, path, operation in self.description.operations():

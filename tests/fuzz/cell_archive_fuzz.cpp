@@ -29,8 +29,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   };
   if (cell->fold > 1000) return 0;
   for (const MeshPart part : {MeshPart::kCell, MeshPart::kFull}) {
-    for (const MeshFormat format :
-         {MeshFormat::kJson, MeshFormat::kVtu, MeshFormat::kMsh, MeshFormat::kSvg}) {
+    for (const MeshFormat format : {MeshFormat::kJson, MeshFormat::kVtu, MeshFormat::kMsh,
+                                    MeshFormat::kSvg, MeshFormat::kStl}) {
       left = 1 << 20;
       (void)write_mesh(*cell, part, format, {}, sink);
     }

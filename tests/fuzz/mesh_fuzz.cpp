@@ -2,7 +2,7 @@
 #include "api/formats/model_reader.hpp"
 #include "api/formats/vtu_reader.hpp"
 #include "core/cells/verify_mesh.hpp"
-#include "core/mesh_pslg.hpp"
+#include "core/mesh_model.hpp"
 #include "tests/fuzz/fuzz_support.hpp"
 
 // From bytes to a mesh with a small budget: an error that is not ours, or a mesh that holds.
@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ExecutionContext context;
   context.set_time_limit(options.time_limit_s);
   context.set_max_elements(options.max_elements);
-  const auto outcome = mesh_pslg(*model, options, context);
+  const auto outcome = mesh_model(*model, options, context);
   if (!outcome) {
     fuzz::require(outcome.error().code != ErrorCode::kInternal, "no input is an internal error");
     return 0;

@@ -8,6 +8,7 @@
 #include "api/schema/options.hpp"
 #include "core/cells/quadratic.hpp"
 #include "tests/golden/golden.hpp"
+#include "tests/support/extruded_cells.hpp"
 #include "tests/support/sample_cells.hpp"
 #include "tests/support/written_mesh.hpp"
 
@@ -45,13 +46,36 @@ TEST(Golden, Msh) {
   expect_golden("square_cell.msh", written(test::square_cell(), MeshPart::kCell, MeshFormat::kMsh));
 }
 
+SymmetryCellMesh prism() {
+  test::Extrusion how;
+  how.layers = 1;
+  how.height = 1;
+  how.frame.origin = {3, -1, 2};
+  return test::extruded_cell(test::disc_cell(4, 1, {0, 0}), how);
+}
+
+TEST(Golden, Solids) {
+  const WriteOptions ascii{VtuEncoding::kAscii, true};
+  expect_golden("prism_cell.json", written(prism(), MeshPart::kCell, MeshFormat::kJson));
+  expect_golden("prism_cell.vtu", written(prism(), MeshPart::kCell, MeshFormat::kVtu, ascii));
+  expect_golden("prism_full.vtu", written(prism(), MeshPart::kFull, MeshFormat::kVtu, ascii));
+  expect_golden("prism_cell.msh", written(prism(), MeshPart::kCell, MeshFormat::kMsh));
+  expect_golden("prism_cell_order2.msh",
+                written(elevate_to_quadratic(prism()), MeshPart::kCell, MeshFormat::kMsh));
+  expect_golden("prism_cell.stl", written(prism(), MeshPart::kCell, MeshFormat::kStl, ascii));
+  expect_golden("prism_full.stl", written(prism(), MeshPart::kFull, MeshFormat::kStl, ascii));
+}
+
 TEST(Golden, Svg) {
   expect_golden("quarter_cell.svg", written(quarter(), MeshPart::kCell, MeshFormat::kSvg));
   expect_golden("quarter_full.svg", written(quarter(), MeshPart::kFull, MeshFormat::kSvg));
 }
 
 TEST(Golden, Options) {
-  expect_golden("options_defaults.json", options_to_json(MeshOptions{}).dump(1) + "\n");
+  expect_golden("options_defaults.json",
+                options_to_json(MeshOptions{}, ModelKind::kPslg).dump(1) + "\n");
+  expect_golden("options_defaults_surface.json",
+                options_to_json(MeshOptions{}, ModelKind::kSurface).dump(1) + "\n");
   std::string table;
   for (const OptionInfo& info : mesh_option_table()) {
     table += std::string(info.name) + " | " + std::string(info.metavar) + " | " +

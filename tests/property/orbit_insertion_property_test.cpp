@@ -90,9 +90,9 @@ void expect_equal_for_file(const std::filesystem::path& path) {
     options.ignore_markers = true;
     options.symmetry_tolerance_rel = 2e-4;
     ExecutionContext context;
-    const auto outcome = mesh_pslg(*model, options, context);
+    const auto outcome = mesh_pslg(std::get<Pslg>(*model), options, context);
     ASSERT_TRUE(outcome) << outcome.error().message;
-    expect_equal_to_reference(*model, outcome->mesh);
+    expect_equal_to_reference(std::get<Pslg>(*model), outcome->mesh);
   }
 }
 

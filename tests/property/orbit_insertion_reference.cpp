@@ -47,7 +47,7 @@ OrbitInsertionReference insert_orbits(const SymmetryCellMesh& cell,
   const auto insert = [&](std::int64_t id) {
     const OrbitVertex v = view.node(id);
     const Point3 p = cell.orbit_points[static_cast<std::size_t>(v.orbit)];
-    const Point2 x = view.rotations().rotate({p.x, p.y}, v.exponent);
+    const Point2 x = view.rotations().rotate(Point2{p.x, p.y}, v.exponent);
     const Cdt::Vertex_handle handle = cdt.insert(Cdt::Point(x.x, x.y));
     handle->info() = static_cast<std::int32_t>(id);
     handles[static_cast<std::size_t>(id)] = handle;

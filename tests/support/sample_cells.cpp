@@ -47,7 +47,7 @@ void add_polygon(Pslg& model,
   const auto first = static_cast<std::int32_t>(model.vertices.size());
   for (std::int32_t k = 0; k < fold; ++k) {
     for (const Point3& p : sector) {
-      const Point2 q = rotations.rotate({p.x, p.y}, k);
+      const Point2 q = rotations.rotate(Point2{p.x, p.y}, k);
       model.vertices.push_back({center.x + q.x, center.y + q.y});
     }
   }

@@ -3,11 +3,15 @@
 
 #include <array>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
 #include "api/formats/pslg_json.hpp"
+#include "api/schema/statistics_json.hpp"
 #include "core/cells/quadratic.hpp"
+#include "core/stats/quality.hpp"
+#include "tests/support/extruded_cells.hpp"
 #include "tests/support/sample_cells.hpp"
 #include "tests/support/test_files.hpp"
 #include "tests/support/written_mesh.hpp"
@@ -49,6 +53,46 @@ TEST(ForeignReaders, IndependentCheckerPassesVtuFiles) {
         EXPECT_EQ(check.status, 0) << sample.name << " order " << mesh.order << "\n"
                                    << check.output;
       }
+    }
+  }
+}
+
+std::string plc_json(const Plc& model) {
+  const auto point = [](const Point3& p) { return nlohmann::json({p.x, p.y, p.z}); };
+  nlohmann::json json{{"type", "plc"}};
+  for (const Point3& p : model.vertices) json["vertices"].push_back(point(p));
+  for (const PlcFacet& facet : model.facets) {
+    nlohmann::json entry{{"polygons", facet.polygons}, {"marker", facet.marker}};
+    for (const Point3& hole : facet.holes) entry["holes"].push_back(point(hole));
+    json["facets"].push_back(entry);
+  }
+  for (const PlcRegion& region : model.regions) {
+    json["regions"].push_back({{"point", point(region.point)}, {"attribute", region.attribute}});
+  }
+  return json.dump();
+}
+
+TEST(ForeignReaders, IndependentCheckerPassesSolids) {
+  const auto shared = test::shared_folder();
+  if (!shared) GTEST_SKIP() << "the independent checker is not beside the source tree";
+  const test::TemporaryFolder folder;
+  for (const test::SolidSample& sample : test::solid_samples()) {
+    test::write_file(folder / "model.json", plc_json(sample.model));
+    for (const SymmetryCellMesh& mesh : {sample.cell, elevate_to_quadratic(sample.cell)}) {
+      for (const auto& [part, name] :
+           {std::pair{MeshPart::kCell, "cell.vtu"}, std::pair{MeshPart::kFull, "full.vtu"}}) {
+        test::write_file(folder / name, written(mesh, part, MeshFormat::kVtu));
+      }
+      Statistics statistics;
+      measure_cell_3(mesh, statistics);
+      test::write_file(folder / "stats.json",
+                       statistics_to_json(statistics, {}, ModelKind::kPlc).dump());
+      const std::string at = folder.path().string() + "/";
+      const Outcome check = run("/usr/bin/python3 " + (*shared / "tools/meshcheck.py").string() +
+                                    " " + at + "cell.vtu --full " + at + "full.vtu --model " + at +
+                                    "model.json --stats " + at + "stats.json --quiet",
+                                folder);
+      EXPECT_EQ(check.status, 0) << sample.name << " order " << mesh.order << "\n" << check.output;
     }
   }
 }
@@ -103,8 +147,15 @@ bool has_warning(const std::string& output) {
 TEST(ForeignReaders, GmshKeepsNodesElementsGroupsAndPeriodicity) {
   if (std::system("command -v gmsh > /dev/null 2>&1") != 0) GTEST_SKIP() << "no gmsh here";
   const test::TemporaryFolder folder;
+  std::vector<std::pair<std::string, SymmetryCellMesh>> samples;
   for (const test::Sample& sample : test::all_samples()) {
-    for (const SymmetryCellMesh& mesh : {sample.cell, elevate_to_quadratic(sample.cell)}) {
+    samples.emplace_back(sample.name, sample.cell);
+  }
+  for (const test::SolidSample& sample : test::solid_samples()) {
+    samples.emplace_back(std::string("solid ") + sample.name, sample.cell);
+  }
+  for (const auto& [name, linear] : samples) {
+    for (const SymmetryCellMesh& mesh : {linear, elevate_to_quadratic(linear)}) {
       for (const MeshPart part : {MeshPart::kCell, MeshPart::kFull}) {
         const std::string at = folder.path().string() + "/";
         const std::string ours = written(mesh, part, MeshFormat::kMsh);
@@ -115,8 +166,8 @@ TEST(ForeignReaders, GmshKeepsNodesElementsGroupsAndPeriodicity) {
         EXPECT_EQ(gmsh.output.find("Error"), std::string::npos) << gmsh.output;
         EXPECT_FALSE(has_warning(gmsh.output)) << gmsh.output;
         const std::string theirs = test::read_file(folder / "out.msh");
-        EXPECT_EQ(counts(theirs), counts(ours)) << sample.name;
-        EXPECT_EQ(periodic_pairs(theirs), periodic_pairs(ours)) << sample.name;
+        EXPECT_EQ(counts(theirs), counts(ours)) << name;
+        EXPECT_EQ(periodic_pairs(theirs), periodic_pairs(ours)) << name;
       }
     }
   }

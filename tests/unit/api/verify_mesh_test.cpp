@@ -35,9 +35,10 @@ TEST(VerifyMesh, GoodMeshesPass) {
     for (const SymmetryCellMesh& mesh : {sample.cell, elevate_to_quadratic(sample.cell)}) {
       const MeshData cell = read(mesh, MeshPart::kCell);
       const MeshData full = read(mesh, MeshPart::kFull);
-      const auto given = verify_mesh(cell, &full, &sample.model, {});
+      const Model model = sample.model;
+      const auto given = verify_mesh(cell, &full, &model, {});
       EXPECT_TRUE(given.ok()) << sample.name << ": " << failures(given);
-      const auto restored = verify_mesh(cell, nullptr, &sample.model, {});
+      const auto restored = verify_mesh(cell, nullptr, &model, {});
       EXPECT_TRUE(restored.ok()) << sample.name << ": " << failures(restored);
       EXPECT_TRUE(verify_mesh(cell, nullptr, nullptr, {}).ok());
     }
@@ -102,7 +103,8 @@ TEST(VerifyMesh, EveryFlawIsFound) {
     MeshData full = read(test::ring_cell(shape), MeshPart::kFull);
     Pslg model = test::ring_model(shape);
     flaw.make(cell, full, model);
-    const auto report = verify_mesh(cell, &full, &model, {});
+    const Model given = model;
+    const auto report = verify_mesh(cell, &full, &given, {});
     EXPECT_TRUE(fails(report, flaw.check)) << flaw.check << "; found: " << failures(report);
   }
 }
@@ -114,7 +116,8 @@ TEST(VerifyMesh, SegmentsOutsideTheDomainAreNoFlaw) {
   model.vertices.push_back({5, 5});
   const auto out = static_cast<std::int32_t>(model.vertices.size()) - 1;
   model.segments.push_back({0, out, 0});
-  const auto report = verify_mesh(cell, nullptr, &model, {});
+  const Model given = model;
+  const auto report = verify_mesh(cell, nullptr, &given, {});
   EXPECT_TRUE(report.ok()) << failures(report);
 }
 
@@ -141,9 +144,9 @@ TEST(VerifyMesh, MidNodesOffTheirEdge) {
 TEST(VerifyMesh, AreaOfTheModel) {
   const MeshData cell = read(test::square_cell(), MeshPart::kCell);
   VerifyOptions options;
-  options.model_area = 1.0;
+  options.model_measure = 1.0;
   EXPECT_TRUE(verify_mesh(cell, nullptr, nullptr, options).ok());
-  options.model_area = 1.5;
+  options.model_measure = 1.5;
   EXPECT_TRUE(fails(verify_mesh(cell, nullptr, nullptr, options), "model.area"));
 }
 

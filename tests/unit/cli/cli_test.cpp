@@ -72,6 +72,24 @@ TEST_F(Cli, FormatsFromEndings) {
   EXPECT_FALSE(std::filesystem::exists(file("c.stl")));
 }
 
+TEST_F(Cli, SolidsAreMeshedWrittenAndVerified) {
+  const std::string nut = model("p3_01_hexnut_n6.poly");
+  for (const char* name : {"c.vtu", "c.json", "c.msh", "c.stl"}) {
+    const Outcome mesh = symcell("mesh " + nut + " --order 2 --cell " + file(name));
+    EXPECT_EQ(mesh.exit_code, 0) << mesh.err;
+    EXPECT_GT(test::read_file(file(name)).size(), 500U) << name;
+  }
+  EXPECT_EQ(symcell("mesh " + nut + " --cell " + file("c.svg")).exit_code, 2);
+  const Outcome verify = symcell("verify " + file("c.vtu") + " --model " + nut);
+  EXPECT_EQ(verify.exit_code, 0) << verify.out;
+  EXPECT_NE(verify.out.find("pass  model.volume"), std::string::npos) << verify.out;
+  const Outcome other =
+      symcell("verify " + file("c.vtu") + " --model " + model("p3_03_antiprism_n7_skew.json"));
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_NE(other.out.find("fail  model.boundary"), std::string::npos) << other.out;
+  EXPECT_EQ(symcell("verify " + file("c.vtu") + " --model " + ring_).exit_code, 1);
+}
+
 TEST_F(Cli, StandardStreams) {
   const Outcome json = symcell("mesh - --full - --format json", "cat " + ring_ + " | ");
   EXPECT_EQ(json.exit_code, 0) << json.err;
@@ -95,6 +113,38 @@ TEST_F(Cli, InspectsWithoutMeshing) {
   EXPECT_EQ(Json::parse(found.out)["fold"], 7);
 }
 
+TEST_F(Cli, MeshesSolids) {
+  const std::pair<const char*, int> folds[] = {{"p3_01_hexnut_n6.poly", 6},
+                                               {"p3_02_starprism_n5_tip12deg.smesh", 5},
+                                               {"p3_03_antiprism_n7_skew.json", 7}};
+  for (const auto& [name, fold] : folds) {
+    const Outcome found = symcell("inspect " + model(name));
+    ASSERT_EQ(found.exit_code, 0) << found.err;
+    EXPECT_EQ(Json::parse(found.out)["fold"], fold);
+    const Outcome mesh =
+        symcell("mesh " + model(name) + " --cell " + file("c.vtu") + " --stats " + file("s.json"));
+    ASSERT_EQ(mesh.exit_code, 0) << mesh.err;
+    const Json stats = Json::parse(test::read_file(file("s.json")));
+    EXPECT_EQ(stats["symmetry"]["fold"], fold);
+    EXPECT_GT(stats["cell"]["volume"], 0);
+    EXPECT_FALSE(stats["cell"].contains("area"));
+    EXPECT_EQ(stats["settings"]["radius_edge"], 1.414);
+    EXPECT_TRUE(stats["settings"]["min_angle"].is_null());
+  }
+}
+
+// Boxes whose triangles face inwards, all of them or every third: turned round, and told.
+TEST_F(Cli, RepairsOfSurfacesAreTold) {
+  for (const char* name : {"b28_inside_out.stl", "b29_mixed_orientation.stl"}) {
+    const Outcome mesh =
+        symcell("mesh " + model(name) + " --fold 4 --axis-origin 0,0,0 --axis-direction 0,0,1");
+    ASSERT_EQ(mesh.exit_code, 0) << mesh.err;
+    const Json stats = Json::parse(mesh.out);
+    EXPECT_FALSE(stats["repairs"].empty()) << name;
+    EXPECT_NEAR(stats["cell"]["volume"].get<double>() * 4, 32, 1e-6);
+  }
+}
+
 TEST_F(Cli, ExitCodes) {
   const std::pair<std::string, int> cases[] = {
       {"", 2},
@@ -107,6 +157,14 @@ TEST_F(Cli, ExitCodes) {
       {"mesh " + ring_ + " --fold four", 2},
       {"mesh " + ring_ + " --min-angle 43", 2},
       {"mesh " + ring_ + " --radius-edge 2", 2},
+      {"mesh " + model("p3_03_antiprism_n7_skew.json") + " --min-angle 20", 2},
+      {"mesh " + model("p3_03_antiprism_n7_skew.json") + " --cell " + file("c.svg"), 2},
+      {"mesh " + model("b27_axis_zero_vector.stl") + " --axis-direction 0,0,0", 2},
+      {"mesh " + model("b27_axis_zero_vector.stl") + " --axis-direction 0,1", 2},
+      {"mesh " + model("b23_open_symmetric.stl"), 3},
+      {"mesh " + model("b24_truncated_binary.stl"), 3},
+      {"mesh " + model("b31_interpenetrating_boxes.stl"), 3},
+      {"mesh " + model("b33_plc_nonplanar_facets_n3.json"), 3},
       {"mesh " + ring_ + " --seed 1 --seed 2", 2},
       {"mesh /nowhere/model.json", 3},
       {"mesh " + model("b01_star5_declared_6.json") + " --fold 6", 3},

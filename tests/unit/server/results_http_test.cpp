@@ -55,6 +55,9 @@ TEST_F(ResultsHttpTest, VtuEncodingsAreChosenByTheQuery) {
 TEST_F(ResultsHttpTest, WhatIsNotOfferedIsRefused) {
   problem_of(client().Get(path_ + "/cell?format=dxf"), 400);
   problem_of(client().Get(path_ + "/cell", {{"Accept", "image/png"}}), 406);
+  // Surfaces are of solids; this mesh is planar.
+  problem_of(client().Get(path_ + "/cell?format=stl"), 406);
+  problem_of(client().Get(path_ + "/cell", {{"Accept", "model/stl"}}), 406);
   problem_of(client().Get(path_ + "/statistics", {{"Accept", "text/html"}}), 406);
 }
 

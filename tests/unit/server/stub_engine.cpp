@@ -5,6 +5,7 @@
 
 #include "api/formats/cell_archive.hpp"
 #include "server/base/files.hpp"
+#include "server/jobs/local_engine.hpp"
 #include "tests/support/sample_cells.hpp"
 
 namespace symcell::server::test {
@@ -36,13 +37,19 @@ Result<void> StubEngine::run(const EngineJob& job, ExecutionContext& context) {
   return {};
 }
 
-Result<std::string> StubEngine::inspect(std::string_view model,
+Result<ModelFormat> StubEngine::recognise(const std::filesystem::path& model,
+                                          std::optional<ModelFormat> promised,
+                                          ExecutionContext& context) {
+  return LocalEngine().recognise(model, promised, context);
+}
+
+Result<std::string> StubEngine::inspect(const std::filesystem::path& model,
                                         ModelFormat /*format*/,
                                         const MeshOptions& /*options*/,
                                         ExecutionContext& /*context*/) {
   const std::lock_guard lock(mutex_);
   if (error_) return tl::unexpected(*error_);
-  return "{\"bytes\": " + std::to_string(model.size()) + "}\n";
+  return "{\"bytes\": " + std::to_string(std::filesystem::file_size(model)) + "}\n";
 }
 
 void StubEngine::close_gate() {

@@ -14,10 +14,17 @@ class StubEngine final : public JobEngine {
  public:
   // Writes a small ring cell, once open() and unless told to fail.
   [[nodiscard]] Result<void> run(const EngineJob& job, ExecutionContext& context) override;
-  [[nodiscard]] Result<std::string> inspect(std::string_view model,
+  [[nodiscard]] Result<ModelFormat> recognise(const std::filesystem::path& model,
+                                              std::optional<ModelFormat> promised,
+                                              ExecutionContext& context) override;
+  [[nodiscard]] Result<std::string> inspect(const std::filesystem::path& model,
                                             ModelFormat format,
                                             const MeshOptions& options,
                                             ExecutionContext& context) override;
+
+  [[nodiscard]] std::string fault() const override { return broken_ ? "the stub is broken" : ""; }
+  void append_metrics(std::string& text) const override { text += "stub_engine 1\n"; }
+  void break_down(bool broken) { broken_ = broken; }
 
   // From now on jobs wait until opened or cancelled.
   void close_gate();
@@ -36,6 +43,7 @@ class StubEngine final : public JobEngine {
   std::optional<Error> error_;
   std::atomic<bool> throws_{false};
   std::atomic<bool> ignores_cancel_{false};
+  std::atomic<bool> broken_{false};
   std::atomic<int> runs_{0};
 };
 

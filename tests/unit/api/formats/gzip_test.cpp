@@ -47,7 +47,7 @@ TEST(Gzip, DamageIsTold) {
 
 TEST(Gzip, ModelsMayBePacked) {
   const std::string model = R"({"type":"pslg","vertices":[[1,2]],"segments":[]})";
-  EXPECT_EQ(read_model(gzip(model), std::nullopt).value().vertices.size(), 1U);
+  EXPECT_EQ(std::get<Pslg>(read_model(gzip(model), std::nullopt).value()).vertices.size(), 1U);
   EXPECT_EQ(read_model(gzip(gzip(model)), std::nullopt).error().code, ErrorCode::kUnknownFormat);
 }
 

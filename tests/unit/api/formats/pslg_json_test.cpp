@@ -112,12 +112,11 @@ TEST(PslgJson, SpellingAndMissingFields) {
 }
 
 TEST(PslgJson, SolidsAreToldAsSuch) {
-  for (const char* text :
-       {R"({"type":"plc","vertices":[[0,0,0]],"facets":[]})",
-        R"({"vertices":[[0,0,0]],"facets":[{"polygons":[[0,1,2]]}],"type":"plc"})",
-        R"({"vertices":[[0,0,0]],"facets":[]})"}) {
+  for (const char* text : {R"({"type":"plc","vertices":[],"facets":[]})",
+                           R"({"vertices":[],"facets":[{"polygons":[[0,1,2]]}],"type":"plc"})",
+                           R"({"vertices":[],"facets":[]})"}) {
     const Error error = error_of(text);
-    EXPECT_EQ(error.code, ErrorCode::kUnsupportedModel);
+    EXPECT_EQ(error.code, ErrorCode::kWrongType);
     EXPECT_NE(error.message.find("solid"), std::string::npos);
   }
 }

@@ -6,6 +6,7 @@ namespace symcell {
 namespace {
 
 using Json = nlohmann::json;
+constexpr ModelKind kPlanar = ModelKind::kPslg;
 
 ErrorCode code_of(const Result<MeshOptions>& result) {
   EXPECT_FALSE(result.has_value());
@@ -22,7 +23,7 @@ TEST(Options, DefaultsAreThoseOfTheCore) {
   EXPECT_FALSE(options->fold);
   EXPECT_EQ(options->min_angle_deg, 30);
   EXPECT_EQ(options->order, 1);
-  EXPECT_EQ(options->symmetry_tolerance_rel, 1e-6);
+  EXPECT_EQ(options->symmetry_tolerance_rel, std::nullopt);
 }
 
 TEST(Options, JsonAndTextsSetTheSame) {
@@ -44,7 +45,7 @@ TEST(Options, JsonAndTextsSetTheSame) {
                                          {"plain", "true"}});
   ASSERT_TRUE(json) << json.error().message;
   ASSERT_TRUE(texts) << texts.error().message;
-  EXPECT_EQ(options_to_json(*json), options_to_json(*texts));
+  EXPECT_EQ(options_to_json(*json, kPlanar), options_to_json(*texts, kPlanar));
   EXPECT_EQ(json->fold, 6);
   EXPECT_TRUE(json->ignore_markers);
   EXPECT_EQ(json->center, (Point2{1, -2.5}));
@@ -94,7 +95,19 @@ TEST(Options, NumbersOutOfRange) {
                                                      {"symmetry_tolerance", "0"},
                                                      {"symmetry_tolerance", "2"},
                                                      {"ignore_markers", "maybe"},
-                                                     {"plain", "2"}};
+                                                     {"plain", "2"},
+                                                     {"radius_edge", "0.9"},
+                                                     {"radius_edge", "101"},
+                                                     {"radius_edge", "nan"},
+                                                     {"min_dihedral", "-1"},
+                                                     {"min_dihedral", "71"},
+                                                     {"max_volume", "0"},
+                                                     {"max_volume", "inf"},
+                                                     {"delaunay", "perhaps"},
+                                                     {"memory_limit", "0"},
+                                                     {"memory_limit", "63"},
+                                                     {"memory_limit", "1e12"},
+                                                     {"memory_limit", "100.5"}};
   for (const auto& [name, text] : bad) {
     const auto options = from_text(name, text);
     EXPECT_EQ(code_of(options), ErrorCode::kBadOption) << name << " " << text;
@@ -106,31 +119,78 @@ TEST(Options, NumbersOutOfRange) {
   EXPECT_EQ(from_text("seed", "18446744073709551615")->seed, ~std::uint64_t{0});
 }
 
-TEST(Options, CentreAndAxis) {
-  EXPECT_EQ(from_text("axis_origin", "1,2,0")->center, (Point2{1, 2}));
-  EXPECT_EQ(from_text("center", " 1 , +2")->center, (Point2{1, 2}));
-  EXPECT_TRUE(from_text("axis_direction", "0,0,1"));
-  EXPECT_TRUE(from_text("axis_direction", "0,0,-1"));
+TEST(Options, CentreAndAxisOfPlanarModels) {
+  const auto planar = [](const std::string& name, const std::string& text) {
+    return options_for(kPlanar, from_text(name, text).value());
+  };
+  EXPECT_EQ(planar("axis_origin", "1,2,0")->center, (Point2{1, 2}));
+  EXPECT_EQ(planar("axis_origin", "1,2")->center, (Point2{1, 2}));
+  EXPECT_EQ(planar("center", " 1 , +2")->center, (Point2{1, 2}));
+  EXPECT_TRUE(planar("axis_direction", "0,0,1"));
+  EXPECT_TRUE(planar("axis_direction", "0,0,-1"));
+  EXPECT_EQ(code_of(planar("axis_direction", "1,0,0")), ErrorCode::kBadAxis);
+  EXPECT_EQ(code_of(planar("axis_origin", "1,2,3")), ErrorCode::kBadAxis);
   EXPECT_TRUE(options_from_json({{"axis_direction", nullptr}, {"axis_origin", {3, 4}}}));
-  for (const char* axis : {"0,0,0", "1,0,0", "nan,0,1", "0,1", "z", ""}) {
-    EXPECT_EQ(code_of(from_text("axis_direction", axis)), ErrorCode::kBadAxis) << axis;
-  }
   for (const char* center : {"1", "1,2,3", "1,2,0,0", "nan,0", "1,inf", "a,b", "1,", ",1", "1;2"}) {
     EXPECT_EQ(code_of(from_text("center", center)), ErrorCode::kBadAxis) << center;
   }
   EXPECT_EQ(code_of(options_from_json({{"center", {1, 2}}, {"axis_origin", {1, 3}}})),
             ErrorCode::kBadAxis);
+  const auto both = options_from_json({{"center", {1, 2}}, {"axis_origin", {1, 3, 0}}});
+  EXPECT_EQ(code_of(options_for(kPlanar, both.value())), ErrorCode::kBadAxis);
   EXPECT_EQ(code_of(options_from_json({{"center", {"1", "2"}}})), ErrorCode::kBadAxis);
 }
 
-TEST(Options, SolidsOnlyOnesAreKnownAndRefused) {
-  for (const char* name : {"radius_edge", "max_volume", "min_dihedral", "delaunay"}) {
-    EXPECT_TRUE(is_mesh_option(name));
-    const auto options = from_text(name, "1");
-    EXPECT_EQ(code_of(options), ErrorCode::kBadOption);
-    EXPECT_NE(options.error().message.find("solid"), std::string::npos);
+TEST(Options, AxisOfSolids) {
+  const auto options = options_from_texts({{"axis-origin", "1,2,3"}, {"axis-direction", "0,3,-4"}});
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_EQ(options->axis_origin, (Point3{1, 2, 3}));
+  EXPECT_EQ(options->axis_direction, (Point3{0, 3, -4}));
+  for (const ModelKind kind : {ModelKind::kPlc, ModelKind::kSurface}) {
+    EXPECT_TRUE(options_for(kind, *options));
   }
-  EXPECT_TRUE(options_from_json({{"radius_edge", nullptr}, {"delaunay", false}}));
+  for (const char* axis : {"0,0,0", "-0,0,0", "nan,0,1", "inf,0,1", "0,1", "1e-300,0,0",
+                           "1e300,0,0", "1,2,3,4", "z", ""}) {
+    const auto bad = from_text("axis_direction", axis);
+    EXPECT_EQ(code_of(bad), ErrorCode::kBadAxis) << axis;
+    EXPECT_EQ(bad.error().pointer, "/options/axis_direction");
+  }
+  EXPECT_EQ(code_of(options_from_json({{"axis_direction", {0, 0, 0}}})), ErrorCode::kBadAxis);
+  EXPECT_EQ(code_of(options_from_json({{"axis_direction", {0, nullptr, 1}}})), ErrorCode::kBadAxis);
+  for (const char* origin : {"1", "nan,0,0", "1,2,inf", "1,2,3,4", "origin"}) {
+    EXPECT_EQ(code_of(from_text("axis_origin", origin)), ErrorCode::kBadAxis) << origin;
+  }
+  // Two coordinates leave open where the axis is.
+  EXPECT_EQ(code_of(options_for(ModelKind::kPlc, from_text("axis_origin", "1,2").value())),
+            ErrorCode::kBadAxis);
+}
+
+TEST(Options, ThoseOfTheOtherKindAreRefused) {
+  const std::pair<const char*, const char*> solids[] = {
+      {"radius_edge", "2"}, {"max_volume", "1"}, {"min_dihedral", "10"}, {"delaunay", ""}};
+  for (const auto& [name, text] : solids) {
+    const auto options = from_text(name, text);
+    ASSERT_TRUE(options) << name;
+    EXPECT_TRUE(options_for(ModelKind::kPlc, *options)) << name;
+    const auto planar = options_for(kPlanar, *options);
+    EXPECT_EQ(code_of(planar), ErrorCode::kBadOption) << name;
+    EXPECT_NE(planar.error().message.find("solid"), std::string::npos);
+    EXPECT_EQ(planar.error().pointer, std::string("/options/") + name);
+  }
+  const std::pair<const char*, const char*> planar[] = {{"min_angle", "20"}, {"max_area", "1"}};
+  for (const auto& [name, text] : planar) {
+    const auto options = from_text(name, text);
+    ASSERT_TRUE(options) << name;
+    EXPECT_TRUE(options_for(kPlanar, *options)) << name;
+    const auto solid = options_for(ModelKind::kSurface, *options);
+    EXPECT_EQ(code_of(solid), ErrorCode::kBadOption) << name;
+    EXPECT_EQ(solid.error().pointer, std::string("/options/") + name);
+  }
+  EXPECT_EQ(code_of(options_for(ModelKind::kSurface, from_text("center", "0,0").value())),
+            ErrorCode::kBadAxis);
+  // What asks for nothing fits.
+  const auto nothing = options_from_json({{"radius_edge", nullptr}, {"delaunay", false}});
+  EXPECT_TRUE(options_for(kPlanar, nothing.value()));
 }
 
 TEST(Options, UnknownNamesAreRefusedWithASuggestion) {
@@ -150,12 +210,33 @@ TEST(Options, SettingsTellEveryNameAndReadBack) {
   options.fold = 5;
   options.center = Point2{1, 2};
   options.max_area = 3;
-  const auto json = options_to_json(options);
+  const auto json = options_to_json(options, kPlanar);
   EXPECT_EQ(json.size(), mesh_option_table().size());
   EXPECT_TRUE(json["max_edge"].is_null());
   const auto back = options_from_json(Json(json));
   ASSERT_TRUE(back) << back.error().message;
-  EXPECT_EQ(options_to_json(*back), json);
+  EXPECT_EQ(options_to_json(*back, kPlanar), json);
+}
+
+TEST(Options, SettingsOfSolidsReadBack) {
+  const auto options = options_from_json({{"axis_origin", {0, 0, 1}},
+                                          {"axis_direction", {0, 0, 2}},
+                                          {"radius_edge", 1.6},
+                                          {"max_volume", 0.25},
+                                          {"min_dihedral", 12},
+                                          {"delaunay", true},
+                                          {"memory_limit", 512}});
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_EQ(options->memory_limit_bytes, std::uint64_t{512} << 20U);
+  const auto json = options_to_json(*options, ModelKind::kSurface);
+  EXPECT_EQ(json.size(), mesh_option_table().size());
+  EXPECT_TRUE(json["min_angle"].is_null());
+  EXPECT_EQ(json["symmetry_tolerance"], kSurfaceSymmetryToleranceRel);
+  EXPECT_EQ(json["memory_limit"], 512);
+  const auto back = options_from_json(Json(json));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(options_to_json(*back, ModelKind::kSurface), json);
+  EXPECT_EQ(options_to_json({}, ModelKind::kPlc)["symmetry_tolerance"], kExactSymmetryToleranceRel);
 }
 
 }  // namespace

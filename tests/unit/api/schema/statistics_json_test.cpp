@@ -11,7 +11,7 @@ TEST(StatisticsJson, HasEveryNameOfTheInterface) {
   statistics.cell.measure = 0.5;
   statistics.cell.aspect_ratio_histogram[8] = 3;
   statistics.exempt.push_back({"small_input_angle", 4});
-  const auto json = statistics_to_json(statistics, MeshOptions{});
+  const auto json = statistics_to_json(statistics, MeshOptions{}, ModelKind::kPslg);
   for (const char* pointer : {"/cell/elements",
                               "/cell/nodes",
                               "/cell/symmetry_nodes",
@@ -58,7 +58,8 @@ TEST(StatisticsJson, HasEveryNameOfTheInterface) {
 TEST(StatisticsJson, NumbersThatAreNoneBecomeNull) {
   Statistics statistics;
   statistics.cell.min_angle_deg = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(statistics_to_json(statistics, {})["cell"]["min_angle_deg"].is_null());
+  EXPECT_TRUE(
+      statistics_to_json(statistics, {}, ModelKind::kPslg)["cell"]["min_angle_deg"].is_null());
 }
 
 TEST(InspectionJson, TellsSymmetryAndSize) {

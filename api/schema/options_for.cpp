@@ -1,0 +1,69 @@
+// Whether options fit a kind of model, told once the kind is known.
+#include <cmath>
+#include <string>
+
+#include "api/schema/options.hpp"
+
+namespace symcell {
+namespace {
+
+tl::unexpected<Error> not_of_kind(ModelKind kind, const std::string& name) {
+  const std::string message =
+      is_planar(kind)
+          ? " is for solid models; planar models take min_angle, max_area and max_edge"
+          : " is for planar models; solids take radius_edge, min_dihedral, max_volume and max_edge";
+  return fail(ErrorCode::kBadOption, name + message, {}, "/options/" + name);
+}
+
+tl::unexpected<Error> bad_axis(const std::string& name, const std::string& message) {
+  return fail(ErrorCode::kBadAxis, message, {}, "/options/" + name);
+}
+
+Result<MeshOptions> options_for_planar(MeshOptions options) {
+  const MeshOptions standard;
+  const auto refuse = [](const char* name) { return not_of_kind(ModelKind::kPslg, name); };
+  if (options.radius_edge != standard.radius_edge) return refuse("radius_edge");
+  if (options.min_dihedral_deg != standard.min_dihedral_deg) return refuse("min_dihedral");
+  if (std::isfinite(options.max_volume)) return refuse("max_volume");
+  if (options.delaunay) return refuse("delaunay");
+  if (options.axis_direction &&
+      (options.axis_direction->x != 0 || options.axis_direction->y != 0)) {
+    return bad_axis("axis_direction",
+                    "axis_direction must be 0,0,1 or left out for a planar model: its axis is "
+                    "normal to the plane");
+  }
+  if (options.axis_origin) {
+    const Point2 center{options.axis_origin->x, options.axis_origin->y};
+    if (options.axis_origin->z != 0) {
+      return bad_axis("axis_origin", "axis_origin must lie in the plane z = 0 of a planar model");
+    }
+    if (options.center && *options.center != center) {
+      return bad_axis("axis_origin",
+                      "center and axis_origin are two different points; give one of them");
+    }
+    options.center = center;
+  }
+  options.axis_origin.reset();
+  options.axis_direction.reset();
+  return options;
+}
+
+Result<MeshOptions> options_for_solid(ModelKind kind, MeshOptions options) {
+  const MeshOptions standard;
+  if (options.center) {
+    return bad_axis("center",
+                    "a planar centre of two coordinates was given, but the model is a solid; give "
+                    "axis_origin x,y,z and axis_direction x,y,z");
+  }
+  if (options.min_angle_deg != standard.min_angle_deg) return not_of_kind(kind, "min_angle");
+  if (std::isfinite(options.max_area)) return not_of_kind(kind, "max_area");
+  return options;
+}
+
+}  // namespace
+
+Result<MeshOptions> options_for(ModelKind kind, MeshOptions options) {
+  return is_planar(kind) ? options_for_planar(options) : options_for_solid(kind, options);
+}
+
+}  // namespace symcell

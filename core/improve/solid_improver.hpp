@@ -1,0 +1,71 @@
+// Improvement and coarsening of a refined solid: the worst tetrahedra first, flips before moves
+// before collapses; then vertices that the bounds do not need are merged into neighbours. Bounds
+// that are kept stay kept. Source: [KlingnerShewchuk07] (schedule), here with size bounds and in
+// the quotient.
+#pragma once
+
+#include <cstdint>
+#include <queue>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/execution_context.hpp"
+#include "core/improve/solid_surgery.hpp"
+
+namespace symcell {
+
+class SolidImprover {
+ public:
+  SolidImprover(SolidSurgery& surgery, const SolidCriteria& criteria, ExecutionContext& context);
+
+  // Mends, coarsens, smooths and mends again; some tetrahedra may break bounds a little afterwards.
+  // `goal`: sine of the dihedral angle below which a tetrahedron is worked on.
+  // Errors: kTimeLimit, kCancelled, kElementLimit.
+  [[nodiscard]] Result<void> round(double goal);
+
+  // Before refinement: merges the vertices that the cut of the sector made on segments and facets
+  // of the input into their neighbours there. Returns how many stay. Source: [paper] sec. 5.1.
+  [[nodiscard]] std::size_t collapse_cut_vertices();
+
+  // Merges what can go; `floor`: least sine that collapses may leave.
+  [[nodiscard]] Result<void> coarsen(double floor);
+  // Works on tetrahedra whose shape is below `goal` or that break a bound until nothing helps.
+  [[nodiscard]] Result<void> mend(double goal);
+  // Moves every vertex once.
+  [[nodiscard]] Result<void> smooth_all();
+
+ private:
+  struct Entry {
+    double key;
+    TetId t;
+    std::uint32_t version;
+    friend bool operator<(const Entry& a, const Entry& b) {
+      return a.key != b.key ? a.key > b.key : a.t > b.t;
+    }
+  };
+  // Ways to merge a vertex: a tetrahedron with it and the corners to go and to stay, the nearest
+  // target first.
+  struct Way {
+    double squared = 0;
+    TetId t = 0;
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
+    friend auto operator<=>(const Way&, const Way&) = default;
+  };
+  void find_ways(VertexId v);
+  [[nodiscard]] bool merge(VertexId v, double floor, SolidSurgery::Bounds bounds);
+  [[nodiscard]] double key(TetId t) const;
+  [[nodiscard]] bool needs_work(TetId t, double goal) const { return key(t) < goal; }
+  [[nodiscard]] bool improve(TetId t, double goal);
+
+  SolidSurgery& surgery_;
+  QuotientTetrahedralization& mesh_;
+  const SolidCriteria& criteria_;
+  ExecutionContext& context_;
+  std::priority_queue<Entry> queue_;
+  std::vector<TetCopy> star_;
+  std::vector<Corner> seen_;
+  std::vector<Way> ways_;
+};
+
+}  // namespace symcell

@@ -1,0 +1,307 @@
+#include "core/improve/solid_surgery.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/assert.hpp"
+
+namespace symcell {
+namespace {
+
+// Rings of more tetrahedra are hardly ever worth removing, and cost grows with the cube.
+constexpr std::size_t kMaxRing = 8;
+// While a bound is broken, shapes may get worse, but not below this sine.
+constexpr double kPoorShape = 0.3;
+
+bool is_flat(const TetMeasures& m) {
+  return 6 * m.volume <= kMinRelativeVolume * m.longest2 * std::sqrt(m.longest2);
+}
+
+}  // namespace
+
+SolidSurgery::SolidSurgery(SolidEditor& editor, const SolidCriteria& criteria)
+    : editor_(editor), mesh_(editor.mesh()), criteria_(criteria) {
+  shapes_.resize(mesh_.tet_slots());
+  for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
+    if (!mesh_.alive(t)) continue;
+    const auto x = editor_.points({t, 0});
+    shapes_[t] = min_dihedral_sine(x[0], x[1], x[2], x[3]);
+  }
+}
+
+void SolidSurgery::include(Worth& w, double shape, double excess) const {
+  w.shape = std::min(w.shape, shape);
+  w.excess = std::max(w.excess, excess);
+}
+
+SolidSurgery::Worth SolidSurgery::worth_of(std::span<const TetCopy> tets) const {
+  Worth w;
+  for (const TetCopy& c : tets) {
+    const Tet& t = mesh_.tet(c.t);
+    const bool exempt = criteria_.exemption(mesh_, t) != SolidExemption::kNone;
+    include(w, shapes_[c.t], criteria_.excess(editor_.measures(c.t), t.region, exempt));
+  }
+  return w;
+}
+
+SolidSurgery::Worth SolidSurgery::worth_of(std::span<const NewTet> tets) const {
+  Worth w;
+  for (const NewTet& t : tets) {
+    const Point3 a = mesh_.lift(t.c[0]), b = mesh_.lift(t.c[1]), c = mesh_.lift(t.c[2]),
+                 d = mesh_.lift(t.c[3]);
+    const TetMeasures m = measure_tet(a, b, c, d);
+    if (is_flat(m)) return {-1, std::numeric_limits<double>::infinity()};
+    include(w, min_dihedral_sine(a, b, c, d), criteria_.excess(m, t.region, exempt(t)));
+  }
+  return w;
+}
+
+bool SolidSurgery::exempt(const NewTet& t) const {
+  for (const Corner& x : t.c) {
+    if (criteria_.exemption(mesh_, x.v) != SolidExemption::kNone) return true;
+  }
+  return false;
+}
+
+bool SolidSurgery::all_within(std::span<const NewTet> tets,
+                              const Moved* moved,
+                              double least_shape,
+                              double most_excess) const {
+  const auto place = [&](Corner x) {
+    return moved != nullptr && x == moved->corner ? moved->place : mesh_.lift(x);
+  };
+  for (const NewTet& t : tets) {
+    const Point3 a = place(t.c[0]), b = place(t.c[1]), c = place(t.c[2]), d = place(t.c[3]);
+    if (six_volumes(a, b, c, d) <= 0) return false;
+    const TetMeasures m = measure_tet(a, b, c, d);
+    if (is_flat(m) || criteria_.excess(m, t.region, exempt(t)) > most_excess) return false;
+    if (min_dihedral_sine(a, b, c, d) < least_shape) return false;
+  }
+  return true;
+}
+
+bool SolidSurgery::better(const Worth& now, const Worth& before) {
+  if (now.shape <= 0) return false;
+  if (before.excess > 1) {
+    if (now.excess > before.excess * (1 - kExcessGain)) {
+      return now.excess <= before.excess && now.shape > before.shape * (1 + kGain);
+    }
+    return now.shape > std::min(before.shape, kPoorShape);
+  }
+  return now.excess <= 1 && now.shape > before.shape * (1 + kGain);
+}
+
+bool SolidSurgery::apply(std::span<const TetCopy> removed,
+                         std::span<const NewTet> added,
+                         Outline outline) {
+  if (!editor_.replace(removed, added, outline)) return false;
+  ++edits_;
+  if (shapes_.size() < mesh_.tet_slots()) shapes_.resize(mesh_.tet_slots());
+  touched_.assign(mesh_.added_ids().begin(), mesh_.added_ids().end());
+  for (const TetId t : touched_) {
+    const auto x = editor_.points({t, 0});
+    shapes_[t] = min_dihedral_sine(x[0], x[1], x[2], x[3]);
+  }
+  return true;
+}
+
+void SolidSurgery::refresh(TetId t) {
+  editor_.remeasure(t);
+  const auto x = editor_.points({t, 0});
+  shapes_[t] = min_dihedral_sine(x[0], x[1], x[2], x[3]);
+}
+
+bool SolidSurgery::load_ring(TetId t, std::uint32_t i, std::uint32_t j) {
+  Ring& r = ring_;
+  r.a = mesh_.corner(t, i);
+  r.b = mesh_.corner(t, j);
+  if (mesh_.segment_of(r.a, r.b) != kNoSegment) return false;
+  if (mesh_.on_axis(r.a.v) && mesh_.on_axis(r.b.v)) return false;
+  r.tets.clear();
+  r.closed = mesh_.ring({t, 0}, r.a, r.b, r.tets);
+  const std::size_t m = r.tets.size();
+  if (m > kMaxRing || m < (r.closed ? 3u : 2u)) return false;
+  r.pa = mesh_.lift(r.a);
+  r.pb = mesh_.lift(r.b);
+  r.corners.clear();
+  r.points.clear();
+  const auto off_edge = [&](TetCopy c) {
+    std::array<Corner, 2> o;
+    std::size_t n = 0;
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      const Corner x = mesh_.corner(c, k);
+      if (x != r.a && x != r.b) o[n++] = x;
+    }
+    return o;
+  };
+  auto first = off_edge(r.tets[0]);
+  const auto second = off_edge(r.tets[1]);
+  if (first[0] == second[0] || first[0] == second[1]) std::swap(first[0], first[1]);
+  r.corners = {first[0], first[1]};
+  for (std::size_t k = 1; k < m; ++k) {
+    const auto o = off_edge(r.tets[k]);
+    r.corners.push_back(o[0] == r.corners.back() ? o[1] : o[0]);
+  }
+  if (r.closed) {
+    if (r.corners.back() != r.corners.front()) return false;
+    r.corners.pop_back();
+  }
+  for (const Corner& c : r.corners) r.points.push_back(mesh_.lift(c));
+  if (six_volumes(r.pa, r.pb, r.points[0], r.points[1]) < 0) {
+    std::swap(r.a, r.b);
+    std::swap(r.pa, r.pb);
+  }
+  return true;
+}
+
+double SolidSurgery::triangle_worth(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+  const Point3 &x = ring_.points[i], &y = ring_.points[j], &z = ring_.points[k];
+  const double upper = min_dihedral_sine(x, y, z, ring_.pb);
+  if (upper <= 0) return upper;
+  return std::min(upper, min_dihedral_sine(x, z, y, ring_.pa));
+}
+
+bool SolidSurgery::fill_chain(std::span<const std::uint32_t> chain,
+                              std::int32_t region,
+                              std::int32_t facet,
+                              double least) {
+  const std::size_t n = chain.size();
+  if (n < 3) return false;
+  // best[i][j]: the worst tetrahedron of the best filling of the part from i to j.
+  double best[kMaxRing + 1][kMaxRing + 1];
+  std::uint8_t split[kMaxRing + 1][kMaxRing + 1];
+  for (std::size_t i = 0; i + 1 < n; ++i) best[i][i + 1] = 2;
+  for (std::size_t span = 2; span < n; ++span) {
+    for (std::size_t i = 0; i + span < n; ++i) {
+      const std::size_t j = i + span;
+      best[i][j] = -1;
+      split[i][j] = static_cast<std::uint8_t>(i + 1);
+      for (std::size_t k = i + 1; k < j; ++k) {
+        const double parts = std::min(best[i][k], best[k][j]);
+        if (parts <= std::max(best[i][j], least)) continue;
+        const double worth = std::min(parts, triangle_worth(chain[i], chain[k], chain[j]));
+        if (worth <= best[i][j]) continue;
+        best[i][j] = worth;
+        split[i][j] = static_cast<std::uint8_t>(k);
+      }
+    }
+  }
+  if (best[0][n - 1] <= least) return false;
+  std::array<std::array<std::size_t, 2>, 2 * kMaxRing> todo;
+  std::size_t count = 0;
+  todo[count++] = {0, n - 1};
+  while (count > 0) {
+    const auto [i, j] = todo[--count];
+    if (j - i < 2) continue;
+    const std::size_t k = split[i][j];
+    const Corner x = ring_.corners[chain[i]], y = ring_.corners[chain[k]],
+                 z = ring_.corners[chain[j]];
+    NewTet upper, lower;
+    upper.region = lower.region = region;
+    upper.c[0] = x;
+    upper.c[1] = y;
+    upper.c[2] = z;
+    upper.c[3] = ring_.b;
+    lower.c[0] = x;
+    lower.c[1] = z;
+    lower.c[2] = y;
+    lower.c[3] = ring_.a;
+    if (facet != kNoFacet && i == 0 && j == n - 1) {
+      upper.facet[1] = facet;  // opposite y
+      lower.facet[2] = facet;
+    }
+    new_tets_.push_back(upper);
+    new_tets_.push_back(lower);
+    todo[count++] = {i, k};
+    todo[count++] = {k, j};
+  }
+  return true;
+}
+
+bool SolidSurgery::remove_edge(TetId t, std::uint32_t i, std::uint32_t j) {
+  if (!load_ring(t, i, j)) return false;
+  const Ring& r = ring_;
+  const Worth before = worth_of(r.tets);
+  const double least = before.excess > 1 ? 0 : before.shape;
+  // Subfacets at the edge: none, or two of one facet.
+  const auto m = static_cast<std::uint32_t>(r.corners.size());
+  std::array<std::uint32_t, 2> at{};
+  std::int32_t facet = kNoFacet;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < r.tets.size(); ++k) {
+    const Tet& tet = mesh_.tet(r.tets[k].t);
+    for (std::uint32_t f = 0; f < 4; ++f) {
+      const Corner x = mesh_.corner(r.tets[k], f);
+      if (x == r.a || x == r.b || tet.facet[f] == kNoFacet) continue;
+      // The face at the edge and the ring's other corner of this tetrahedron.
+      const std::uint32_t other = x == r.corners[k] ? (static_cast<std::uint32_t>(k) + 1) % m
+                                                    : static_cast<std::uint32_t>(k);
+      if (count > 0 && (at[0] == other || (count == 2 && at[1] == other))) continue;
+      if (count == 2 || (count == 1 && tet.facet[f] != facet)) return false;
+      facet = tet.facet[f];
+      at[count++] = other;
+    }
+  }
+  new_tets_.clear();
+  std::array<std::uint32_t, kMaxRing + 2> chain;
+  if (!r.closed) {
+    if (count != 2) return false;
+    for (std::uint32_t k = 0; k < m; ++k) chain[k] = k;
+    if (!fill_chain({chain.data(), m}, mesh_.tet(r.tets[0].t).region, facet, least)) return false;
+  } else if (count == 0) {
+    for (std::uint32_t k = 0; k < m; ++k) chain[k] = k;
+    if (!fill_chain({chain.data(), m}, mesh_.tet(r.tets[0].t).region, kNoFacet, least)) {
+      return false;
+    }
+  } else {
+    if (count != 2) return false;
+    for (std::size_t side = 0; side < 2; ++side) {
+      std::size_t n = 0;
+      std::uint32_t k = at[side];
+      const std::int32_t region = mesh_.tet(r.tets[k].t).region;
+      while (true) {
+        chain[n++] = k;
+        if (k == at[1 - side]) break;
+        k = (k + 1) % m;
+      }
+      if (!fill_chain({chain.data(), n}, region, facet, least)) return false;
+    }
+  }
+  if (!better(worth_of(new_tets_), before)) return false;
+  if (!apply(r.tets, new_tets_, Outline::kKept)) return false;
+  editor_.count_flip();
+  return true;
+}
+
+bool SolidSurgery::remove_face(TetId t, std::uint32_t i) {
+  const Tet& tet = mesh_.tet(t);
+  if (tet.facet[i] != kNoFacet || tet.nb[i] == kNoHalfFace) return false;
+  const TetCopy here{t, 0}, there = mesh_.neighbour(here, i);
+  if (there.t == t) return false;
+  const Corner d = mesh_.corner(here, i), e = mesh_.corner(there, face_of(tet.nb[i]));
+  const std::array<Corner, 3> f = {mesh_.corner(here, kFaceCorners[i][0]),
+                                   mesh_.corner(here, kFaceCorners[i][1]),
+                                   mesh_.corner(here, kFaceCorners[i][2])};
+  const std::array<TetCopy, 2> removed = {here, there};
+  const Worth before = worth_of(removed);
+  new_tets_.clear();
+  const Point3 pd = mesh_.lift(d), pe = mesh_.lift(e);
+  for (std::size_t j = 0; j < 3; ++j) {
+    const Corner p = f[j], q = f[(j + 1) % 3];
+    const double shape = min_dihedral_sine(pd, mesh_.lift(p), mesh_.lift(q), pe);
+    if (shape <= (before.excess > 1 ? 0 : before.shape)) return false;
+    NewTet n;
+    n.c[0] = d;
+    n.c[1] = p;
+    n.c[2] = q;
+    n.c[3] = e;
+    n.region = tet.region;
+    new_tets_.push_back(n);
+  }
+  if (!better(worth_of(new_tets_), before) || !apply(removed, new_tets_, Outline::kKept))
+    return false;
+  editor_.count_flip();
+  return true;
+}
+
+}  // namespace symcell

@@ -1,0 +1,141 @@
+// Local operations that improve a solid's mesh: edge removal, face removal (2-3 flips), moves of
+// single vertices, edge collapses. Each looks at what it would make first and is done only if the
+// bounds stay kept (where they are broken: are broken less) and the worst of the tetrahedra
+// concerned gets better, or, for collapses, stays good enough. All work across symmetry bounds as
+// anywhere else. Sources: [KlingnerShewchuk07]; edge removal by dynamic programming after
+// [Klincsek80].
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/delaunay/solid_editor.hpp"
+#include "core/refine/solid_criteria.hpp"
+
+namespace symcell {
+
+// An operation must better the worst shape by this share, lest two undo each other for ever.
+inline constexpr double kGain = 1e-4;
+// Where a bound is broken, the excess must shrink by this share.
+inline constexpr double kExcessGain = 1e-6;
+
+class SolidSurgery {
+ public:
+  SolidSurgery(SolidEditor& editor, const SolidCriteria& criteria);
+
+  // Smallest sine of a dihedral angle, kept up to date.
+  [[nodiscard]] double shape(TetId t) const { return shapes_[t]; }
+  [[nodiscard]] SolidEditor& editor() { return editor_; }
+
+  // Excess (SolidCriteria::excess) that collapses may leave for moves and refinement to mend.
+  void allow_excess(double excess) { allowed_excess_ = excess; }
+
+  // Of the tetrahedra that an operation made or changed.
+  [[nodiscard]] std::span<const TetId> touched() const { return touched_; }
+
+  // Removes the edge between corners i and j of t.
+  [[nodiscard]] bool remove_edge(TetId t, std::uint32_t i, std::uint32_t j);
+  // 2-3 flip of face i of t.
+  [[nodiscard]] bool remove_face(TetId t, std::uint32_t i);
+  // Moves a vertex where its star gets better; vertices of segments and facets stay on them.
+  [[nodiscard]] bool smooth(VertexId v);
+  // Merges corner `from` of t into corner `to`, there or half-way. `floor`: least shape that will
+  // do where the star's own worst is better; a star worse than that must not get worse.
+  // Bounds::kFree: the bounds may be broken (before refinement, when they are broken anyway).
+  enum class Bounds : std::uint8_t { kKept, kFree };
+  [[nodiscard]] bool collapse(
+      TetId t, std::uint32_t from, std::uint32_t to, double floor, Bounds bounds = Bounds::kKept);
+
+ private:
+  struct Worth {
+    double shape = 2;   // the smallest
+    double excess = 0;  // the largest
+  };
+  void include(Worth& w, double shape, double excess) const;
+  [[nodiscard]] Worth worth_of(std::span<const TetCopy> tets) const;
+  // With the corner `moved` at `place`, if given.
+  struct Moved {
+    Corner corner;
+    Point3 place;
+  };
+  [[nodiscard]] Worth worth_of(std::span<const NewTet> tets) const;
+  // Whether all have at least this shape and at most this excess; gives up at the first that has
+  // not.
+  [[nodiscard]] bool all_within(std::span<const NewTet> tets,
+                                const Moved* moved,
+                                double least_shape,
+                                double most_excess) const;
+  [[nodiscard]] bool exempt(const NewTet& t) const;
+  [[nodiscard]] static bool better(const Worth& now, const Worth& before);
+  using Outline = QuotientTetrahedralization::Outline;
+  [[nodiscard]] bool apply(std::span<const TetCopy> removed,
+                           std::span<const NewTet> added,
+                           Outline outline);
+
+  // Edge removal.
+  struct Ring {
+    Corner a, b;
+    Point3 pa, pb;
+    std::vector<TetCopy> tets;
+    std::vector<Corner> corners;
+    std::vector<Point3> points;
+    bool closed = false;
+  };
+  [[nodiscard]] bool load_ring(TetId t, std::uint32_t i, std::uint32_t j);
+  // Triangulates the chain of ring corners, adds the two tetrahedra of every triangle.
+  [[nodiscard]] bool fill_chain(std::span<const std::uint32_t> chain,
+                                std::int32_t region,
+                                std::int32_t facet,
+                                double least);
+  [[nodiscard]] double triangle_worth(std::uint32_t i, std::uint32_t j, std::uint32_t k) const;
+
+  // Collapses.
+  struct Collapse {
+    Corner goes, stays;
+    SolidVertexKind kind = SolidVertexKind::kFree;
+    std::int32_t segment = kNoSegment;
+    Corner behind{-1, 0};  // the segment's other neighbour of `goes`
+  };
+  [[nodiscard]] bool plan_collapse(TetId t, std::uint32_t from, std::uint32_t to, Collapse& plan);
+  void load_collapse_star(VertexId v);
+  [[nodiscard]] bool may_shrink(std::span<const TetCopy> tets, std::size_t left) const;
+  [[nodiscard]] bool merge_in_the_middle(const Collapse& plan, double floor);
+  [[nodiscard]] double most_excess(const Worth& before) const;
+  [[nodiscard]] static double least_shape(double floor, const Worth& before);
+  [[nodiscard]] bool do_collapse(const Collapse& plan);
+  void refresh(TetId t);
+
+  // Moves.
+  [[nodiscard]] bool load_star(VertexId v);
+  [[nodiscard]] Worth star_worth_at(Point3 p, double least, double most) const;
+  [[nodiscard]] Point3 constrain(VertexId v, Point3 p) const;
+
+  SolidEditor& editor_;
+  QuotientTetrahedralization& mesh_;
+  const SolidCriteria& criteria_;
+  double allowed_excess_ = 1;
+  std::vector<double> shapes_;
+  std::vector<TetId> touched_;
+
+  Ring ring_;
+  std::vector<NewTet> new_tets_;
+  std::vector<TetCopy> star_;
+  VertexId star_vertex_ = -1;  // whose star it is, as of edit number star_edits_
+  std::uint64_t star_edits_ = 0;
+  std::uint64_t edits_ = 0;
+  std::vector<TetCopy> other_star_;
+  std::vector<NewTet> stretched_;  // tetrahedra that a merge in the middle moves a corner of
+  struct StarTet {
+    std::array<Corner, 4> c;
+    std::array<Point3, 4> p;
+    std::int32_t region = 0;
+    bool exempt = false;
+    std::uint8_t own = 0;  // bits of the corners that are copies of the vertex
+  };
+  std::vector<StarTet> star_tets_;
+  Point3 direction_;  // of the segment, or normal of the facet, that holds the vertex
+};
+
+}  // namespace symcell

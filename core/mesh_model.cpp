@@ -1,0 +1,83 @@
+#include "core/mesh_model.hpp"
+
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "core/mesh_solid.hpp"
+#include "core/model/validate_pslg.hpp"
+
+namespace symcell {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+void record(const SectorSource& source, Statistics& statistics) {
+  const SolidSymmetry& found = source.symmetry();
+  Statistics::Symmetry& told = statistics.symmetry;
+  told.fold = found.fold;
+  told.axis_origin = found.frame.origin;
+  told.axis_direction = found.frame.direction();
+  told.error_rel = found.error_rel;
+  told.detected = found.fold_detected;
+  statistics.repairs = source.repairs();
+}
+
+// `symmetrise`: the step from the model to a source of exact sectors.
+template <class Symmetrise>
+Result<MeshOutcome> mesh_with(const Symmetrise& symmetrise,
+                              const MeshOptions& options,
+                              ExecutionContext& context) {
+  const Clock::time_point start = Clock::now();
+  context.report(Phase::kSymmetry, 0.02);
+  const Result<std::unique_ptr<SectorSource>> source = symmetrise();
+  if (!source) return tl::unexpected(source.error());
+  const double symmetry_ms = milliseconds_since(start);
+  Result<MeshOutcome> outcome = mesh_solid(**source, options, context);
+  if (!outcome) return outcome;
+  Statistics& statistics = outcome->statistics;
+  record(**source, statistics);
+  statistics.timings_ms.symmetry += symmetry_ms;
+  statistics.timings_ms.total = milliseconds_since(start);
+  return outcome;
+}
+
+template <class Found>
+Result<Inspection> widened(Result<Found> found) {
+  if (!found) return tl::unexpected(found.error());
+  return Inspection(std::move(*found));
+}
+
+}  // namespace
+
+Result<MeshOutcome> mesh_model(const Model& model,
+                               const MeshOptions& options,
+                               ExecutionContext& context) {
+  if (const auto* pslg = std::get_if<Pslg>(&model)) return mesh_pslg(*pslg, options, context);
+  if (const auto* plc = std::get_if<Plc>(&model)) {
+    return mesh_with([&] { return symmetrise_plc(*plc, options, context); }, options, context);
+  }
+  const auto& surface = std::get<TriangleSurface>(model);
+  return mesh_with([&] { return symmetrise_surface(surface, options, context); }, options, context);
+}
+
+Result<Inspection> inspect_model(const Model& model,
+                                 const MeshOptions& options,
+                                 ExecutionContext& context) {
+  if (const auto* pslg = std::get_if<Pslg>(&model)) {
+    if (const auto valid = validate_pslg(*pslg, context); !valid) {
+      return tl::unexpected(valid.error());
+    }
+    return widened(inspect_pslg(*pslg, options, context));
+  }
+  if (const auto* plc = std::get_if<Plc>(&model)) {
+    return widened(inspect_plc(*plc, options, context));
+  }
+  return widened(inspect_surface(std::get<TriangleSurface>(model), options, context));
+}
+
+}  // namespace symcell

@@ -1,0 +1,353 @@
+#include "core/refine/solid_refiner.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace symcell {
+namespace {
+
+// Least distance of a new point to its nearest vertex, as a share of the shortest edge of the bad
+// tetrahedron that caused it: in a Delaunay mesh a circumcentre is B > 1 such edges away, a point
+// of a facet or segment that stands in for it at least 1/sqrt(2) or 1/2 of that.
+constexpr double kInteriorShare = 0.9;
+constexpr double kFacetShare = 0.65;
+constexpr double kSegmentShare = 0.45;
+// Likewise for the sake of size, of the cube root of the volume.
+constexpr double kSizeShare = 0.3;
+constexpr int kMaxPlaneWalk = 1000;
+constexpr int kMaxTurns = 500;
+constexpr std::uint64_t kCheckEvery = 256;
+// A subfacet or subsegment is encroached on by points within this share of its diametral sphere's
+// radius. Less than 1 makes smaller meshes; the improvement removes flat tetrahedra that result.
+constexpr double kEncroachment2 = 0.95 * 0.95;
+
+}  // namespace
+
+SolidRefiner::SolidRefiner(SolidEditor& editor,
+                           const SolidCriteria& criteria,
+                           ExecutionContext& context)
+    : editor_(editor), mesh_(editor.mesh()), criteria_(criteria), context_(context) {
+}
+
+void SolidRefiner::enqueue(TetId t) {
+  const Tet& tet = mesh_.tet(t);
+  const TetMeasures& m = editor_.measures(t);
+  const double sized = criteria_.size_excess2(m, tet.region);
+  const double ratio = criteria_.excess(m, tet.region, false);
+  if (ratio <= 1) return;
+  if (sized <= 1 && criteria_.exemption(mesh_, tet) != SolidExemption::kNone) return;
+  // Shape before size, the worst first.
+  const double key = sized > 1 ? sized : 1e10 * ratio;
+  queue_.push({static_cast<float>(std::min(key, 1e30)), t, tet.version});
+}
+
+void SolidRefiner::enqueue_added() {
+  for (const TetId t : mesh_.added_ids()) enqueue(t);
+}
+
+bool SolidRefiner::still_bad(const Entry& e) const {
+  return mesh_.alive(e.t) && mesh_.tet(e.t).version == e.version;
+}
+
+Result<void> SolidRefiner::run() {
+  depth_.resize(mesh_.vertex_slots(), 0);
+  for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
+    if (mesh_.alive(t)) enqueue(t);
+  }
+  const double initial = static_cast<double>(queue_.size()) + 1;
+  for (std::uint64_t step = 0; !queue_.empty(); ++step) {
+    if (step % kCheckEvery == 0) {
+      if (auto ok = context_.check(mesh_.tet_count()); !ok) return ok;
+      const double left = static_cast<double>(queue_.size());
+      context_.report(Phase::kRefine, 0.15 + 0.45 * (1 - left / std::max(initial, left)),
+                      mesh_.tet_count(),
+                      1 - std::min(1.0, left / static_cast<double>(mesh_.tet_count() + 1)));
+    }
+    const Entry e = queue_.top();
+    queue_.pop();
+    if (!still_bad(e)) continue;
+    Outcome done = treat(e.t);
+    if (done == Outcome::kRefused && still_bad(e)) done = split_too_large(e.t);
+    if (done == Outcome::kRefused) {
+      ++counters_.refused;
+    } else if (still_bad(e)) {
+      queue_.push(e);
+    }
+  }
+  return {};
+}
+
+SolidRefiner::Cause SolidRefiner::cause_of(TetId t) const {
+  const TetMeasures& m = editor_.measures(t);
+  const Tet& tet = mesh_.tet(t);
+  Cause cause;
+  cause.shortest = std::sqrt(m.shortest2);
+  cause.size = criteria_.size_excess2(m, tet.region) > 1;
+  cause.least = cause.size ? kSizeShare * std::cbrt(std::abs(m.volume)) : 0;
+  // The ends of the shortest edge.
+  double best = std::numeric_limits<double>::infinity();
+  for (const auto& e : kEdgeCorners) {
+    const double l2 = squared_distance(mesh_.corner_point(t, e[0]), mesh_.corner_point(t, e[1]));
+    if (l2 >= best) continue;
+    best = l2;
+    const auto depth = [&](VertexId v) {
+      return static_cast<std::size_t>(v) < depth_.size() ? depth_[static_cast<std::size_t>(v)]
+                                                         : std::uint8_t{0};
+    };
+    cause.depth = std::max(depth(tet.v[e[0]]), depth(tet.v[e[1]]));
+  }
+  return cause;
+}
+
+bool SolidRefiner::allowed(const Cavity& cavity, const Cause& cause, double share) const {
+  double nearest = std::sqrt(cavity.nearest2);
+  if (mesh_.fold() > 1) {
+    const Point3 p = cavity.point;
+    const double rho = std::sqrt(p.x * p.x + p.y * p.y);
+    // Copies of the point itself; on the axis it has none.
+    if (rho > 0) nearest = std::min(nearest, 2 * rho * std::sin(std::numbers::pi / mesh_.fold()));
+  }
+  if (cause.size) return nearest >= cause.least;
+  if (nearest < share * cause.shortest) return false;
+  return nearest >= cause.shortest || cause.depth < max_depth_;
+}
+
+SolidRefiner::Outcome SolidRefiner::insert(const Cavity& cavity,
+                                           SolidVertexKind kind,
+                                           std::int32_t parent,
+                                           bool on_axis,
+                                           const Cause& cause) {
+  const VertexId v = editor_.insert(cavity, kind, parent, on_axis);
+  if (v == SolidEditor::kNoVertex) return Outcome::kRefused;
+  depth_.resize(std::max(depth_.size(), mesh_.vertex_slots()), 0);
+  const bool nearer = !cause.size && cavity.nearest2 < cause.shortest * cause.shortest;
+  depth_[static_cast<std::size_t>(v)] =
+      static_cast<std::uint8_t>(cause.size ? 0 : cause.depth + (nearer ? 1 : 0));
+  enqueue_added();
+  return Outcome::kInserted;
+}
+
+SolidRefiner::Outcome SolidRefiner::treat(TetId t) {
+  const Cause cause = cause_of(t);
+  const Point3 p = editor_.measures(t).centre;
+  const auto walk = editor_.walk({t, 0}, p);
+  if (walk.lost) return Outcome::kRefused;
+  if (walk.blocked) return split_subfacet({walk.at, walk.face}, cause);
+  SolidLocation where;
+  where.at = walk.at;
+  if (!editor_.find_cavity(p, where, cavity_)) return Outcome::kRefused;
+  const Encroached e = encroached_by(cavity_, true);
+  if (e.what == Encroached::What::kSubsegment) return split_segment(e.at, e.a, e.b, cause);
+  if (e.what == Encroached::What::kSubfacet) return split_subfacet(e.subfacet, cause);
+  if (!allowed(cavity_, cause, kInteriorShare)) return Outcome::kRefused;
+  const Outcome done = insert(cavity_, SolidVertexKind::kFree, -1, false, cause);
+  if (done == Outcome::kInserted) ++counters_.interior_points;
+  return done;
+}
+
+SolidRefiner::Encroached SolidRefiner::encroached_by(const Cavity& cavity, bool facets) const {
+  Encroached found;
+  const Point3 p = cavity.point;
+  double worst = kEncroachment2;
+  // Subsegments go first: a subfacet beside one may be mended with it.
+  for (const CavityFace& f : cavity.faces) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t k = (j + 1) % 3;
+      if (mesh_.segment_of(f.corners[j], f.corners[k]) == kNoSegment) continue;
+      const Point3 middle = 0.5 * (f.points[j] + f.points[k]);
+      const double share =
+          4 * squared_distance(p, middle) / squared_distance(f.points[j], f.points[k]);
+      if (share >= worst) continue;
+      worst = share;
+      found.what = Encroached::What::kSubsegment;
+      found.at = cavity.tets[f.owner];
+      found.a = f.corners[j];
+      found.b = f.corners[k];
+    }
+  }
+  if (found.what != Encroached::What::kNothing || !facets) return found;
+  for (const CavityFace& f : cavity.faces) {
+    if (f.facet == kNoFacet) continue;
+    const Point3 centre = triangle_circumcentre(f.points[0], f.points[1], f.points[2]);
+    const double share = squared_distance(p, centre) / squared_distance(f.points[0], centre);
+    if (share >= worst) continue;
+    worst = share;
+    found.what = Encroached::What::kSubfacet;
+    const TetCopy at = cavity.tets[f.owner];
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const Corner x = mesh_.corner(at, i);
+      if (x != f.corners[0] && x != f.corners[1] && x != f.corners[2]) {
+        found.subfacet = {at, i};
+      }
+    }
+  }
+  return found;
+}
+
+bool SolidRefiner::cross_edge(Subfacet& s, Corner a, Corner b) const {
+  if (mesh_.segment_of(a, b) != kNoSegment) return false;
+  const std::int32_t facet = mesh_.tet(s.at.t).facet[s.face];
+  TetCopy c = s.at;
+  std::uint32_t from = s.face;
+  for (int turn = 0; turn < kMaxTurns; ++turn) {
+    // The other face at the edge.
+    std::uint32_t leave = 4;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const Corner x = mesh_.corner(c, i);
+      if (i != from && !(x == a) && !(x == b)) leave = i;
+    }
+    if (leave == 4) return false;
+    const Tet& t = mesh_.tet(c.t);
+    if (t.facet[leave] != kNoFacet) {
+      if (t.facet[leave] != facet) return false;
+      s = {c, leave};
+      return true;
+    }
+    from = face_of(t.nb[leave]);
+    c = mesh_.neighbour(c, leave);
+  }
+  return false;
+}
+
+SolidRefiner::Outcome SolidRefiner::split_subfacet(Subfacet s, const Cause& cause) {
+  const std::int32_t facet = mesh_.tet(s.at.t).facet[s.face];
+  std::array<Corner, 3> x;
+  std::array<Point3, 3> q;
+  const auto load = [&] {
+    for (std::size_t j = 0; j < 3; ++j) {
+      x[j] = mesh_.corner(s.at, kFaceCorners[s.face][j]);
+      q[j] = mesh_.lift(x[j]);
+    }
+  };
+  load();
+  Point3 p = triangle_circumcentre(q[0], q[1], q[2]);
+  const Point3 start = (1.0 / 3.0) * (q[0] + q[1] + q[2]);
+  // In the plane of the facet, straight from the subfacet's middle to its circumcentre.
+  std::size_t entered = 3;
+  for (int step = 0; step < kMaxPlaneWalk; ++step) {
+    const Point3 n = cross(q[1] - q[0], q[2] - q[0]);
+    std::size_t leave = 3;
+    double first = 1;
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (j == entered) continue;
+      const Point3 a = q[j], b = q[(j + 1) % 3];
+      const Point3 out = cross(b - a, n);
+      const double along = dot(out, p - start);
+      if (along <= 0) continue;
+      const double at = dot(out, a - start) / along;
+      if (at < first) {
+        first = at;
+        leave = j;
+      }
+    }
+    if (leave == 3) break;
+    const Corner a = x[leave], b = x[(leave + 1) % 3];
+    if (mesh_.segment_of(a, b) != kNoSegment) return split_segment(s.at, a, b, cause);
+    if (!cross_edge(s, a, b)) return Outcome::kRefused;
+    load();
+    entered = 3;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Corner c = x[j], d = x[(j + 1) % 3];
+      if ((c == a && d == b) || (c == b && d == a)) entered = j;
+    }
+  }
+  // Onto the plane of the subfacet that holds it.
+  const Point3 n = cross(q[1] - q[0], q[2] - q[0]);
+  p = p - (dot(p - q[0], n) / dot(n, n)) * n;
+  SolidLocation where;
+  where.kind = SolidLocation::Kind::kOnSubfacet;
+  where.at = s.at;
+  where.face = s.face;
+  if (!editor_.find_cavity(p, where, cavity_)) return Outcome::kRefused;
+  const Encroached e = encroached_by(cavity_, false);
+  if (e.what == Encroached::What::kSubsegment) return split_segment(e.at, e.a, e.b, cause);
+  if (!allowed(cavity_, cause, kFacetShare)) return Outcome::kRefused;
+  const Outcome done = insert(cavity_, SolidVertexKind::kFacet, facet, false, cause);
+  if (done == Outcome::kInserted) ++counters_.facet_splits;
+  return done;
+}
+
+// The last resort for what is too large: halve an edge, the longest that can be. Where all edges
+// meet copies of their own star (cells of a few tetrahedra round the axis) its middle is always
+// free.
+SolidRefiner::Outcome SolidRefiner::split_too_large(TetId t) {
+  Cause cause = cause_of(t);
+  if (!cause.size) return Outcome::kRefused;
+  std::array<std::pair<double, std::size_t>, 6> edges;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto& e = kEdgeCorners[i];
+    edges[i] = {-squared_distance(mesh_.corner_point(t, e[0]), mesh_.corner_point(t, e[1])), i};
+  }
+  std::sort(edges.begin(), edges.end());
+  // In a narrow sector copies of the point are near whatever is done: the second round takes it so.
+  for (const double least : {cause.least, 0.0}) {
+    cause.least = least;
+    for (const auto& [length2, i] : edges) {
+      const Outcome done = split_edge(t, mesh_.corner(t, kEdgeCorners[i][0]),
+                                      mesh_.corner(t, kEdgeCorners[i][1]), cause);
+      if (done == Outcome::kInserted) return done;
+    }
+  }
+  Point3 middle;
+  for (std::uint32_t i = 0; i < 4; ++i) middle = middle + 0.25 * mesh_.corner_point(t, i);
+  SolidLocation where;
+  where.at = {t, 0};
+  if (!editor_.find_cavity(middle, where, cavity_)) return Outcome::kRefused;
+  const Outcome done = insert(cavity_, SolidVertexKind::kFree, -1, false, cause);
+  if (done == Outcome::kInserted) ++counters_.interior_points;
+  return done;
+}
+
+SolidRefiner::Outcome SolidRefiner::split_edge(TetId t, Corner a, Corner b, const Cause& cause) {
+  if (mesh_.segment_of(a, b) != kNoSegment) return split_segment({t, 0}, a, b, cause);
+  SolidLocation where;
+  where.kind = SolidLocation::Kind::kOnEdge;
+  where.at = {t, 0};
+  where.edge = {a, b};
+  const Point3 middle = 0.5 * (mesh_.lift(a) + mesh_.lift(b));
+  if (!editor_.find_cavity(middle, where, cavity_)) return Outcome::kRefused;
+  if (!allowed(cavity_, cause, kInteriorShare)) return Outcome::kRefused;
+  // An edge inside a facet has subfacets of that one facet only.
+  const std::int32_t facet = cavity_.outline.empty() ? kNoFacet : cavity_.outline.front().facet;
+  const Outcome done =
+      insert(cavity_, facet == kNoFacet ? SolidVertexKind::kFree : SolidVertexKind::kFacet, facet,
+             false, cause);
+  if (done == Outcome::kInserted) ++counters_.interior_points;
+  return done;
+}
+
+SolidRefiner::Outcome SolidRefiner::split_segment(TetCopy at,
+                                                  Corner a,
+                                                  Corner b,
+                                                  const Cause& cause) {
+  const Point3 p = mesh_.lift(a), q = mesh_.lift(b);
+  double at_share = 0.5;
+  const bool sharp_a =
+      mesh_.kind(a.v) == SolidVertexKind::kInput && criteria_.sharp_vertex(mesh_, a.v);
+  const bool sharp_b =
+      mesh_.kind(b.v) == SolidVertexKind::kInput && criteria_.sharp_vertex(mesh_, b.v);
+  if (sharp_a != sharp_b) {
+    // Concentric shells: powers of two from the sharp vertex, so that segments that meet there at a
+    // small angle are split at equal distances.
+    const double l = distance(p, q);
+    const double shell = std::exp2(std::round(std::log2(0.5 * l)));
+    at_share = std::clamp(shell / l, 0.3, 0.7);
+    if (sharp_b) at_share = 1 - at_share;
+  }
+  const std::int32_t segment = mesh_.segment_of(a, b);
+  SolidLocation where;
+  where.kind = SolidLocation::Kind::kOnEdge;
+  where.at = at;
+  where.edge = {a, b};
+  const Point3 middle = (1 - at_share) * p + at_share * q;
+  if (!editor_.find_cavity(middle, where, cavity_)) return Outcome::kRefused;
+  if (!allowed(cavity_, cause, kSegmentShare)) return Outcome::kRefused;
+  const bool axis = mesh_.on_axis(a.v) && mesh_.on_axis(b.v);
+  const Outcome done = insert(cavity_, SolidVertexKind::kSegment, segment, axis, cause);
+  if (done == Outcome::kInserted) ++counters_.segment_splits;
+  return done;
+}
+
+}  // namespace symcell

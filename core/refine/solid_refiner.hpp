@@ -1,0 +1,119 @@
+// Delaunay refinement of solids in the quotient.
+//
+// A bad tetrahedron asks for a point at its circumcentre. A subfacet in the way, or one that the
+// point would encroach on, is divided at its own circumcentre instead; a subsegment in the way of
+// that, or encroached on, at its middle. Only what stands against a bad tetrahedron is divided:
+// encroachment alone, with good tetrahedra all round, is left. Source: [paper] sec. 5;
+// [Shewchuk98].
+//
+// Termination: a point for the sake of shape is refused where it would come nearer to a vertex than
+// a share of the bad tetrahedron's shortest edge, and where a chain of points, each nearer than the
+// edge that caused it, gets longer than a given depth: below that edges cannot shrink any further.
+// Points for the sake of size are bounded by the volume and the edge length asked for.
+#pragma once
+
+#include <cstdint>
+#include <queue>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/execution_context.hpp"
+#include "core/delaunay/solid_editor.hpp"
+#include "core/refine/solid_criteria.hpp"
+
+namespace symcell {
+
+struct SolidRefineCounters {
+  std::uint64_t segment_splits = 0;
+  std::uint64_t facet_splits = 0;
+  std::uint64_t interior_points = 0;
+  std::uint64_t refused = 0;  // bad tetrahedra that no point was allowed for
+
+  SolidRefineCounters& operator+=(const SolidRefineCounters& o) {
+    segment_splits += o.segment_splits;
+    facet_splits += o.facet_splits;
+    interior_points += o.interior_points;
+    refused += o.refused;
+    return *this;
+  }
+};
+
+class SolidRefiner {
+ public:
+  static constexpr int kMaxChain = 8;
+
+  SolidRefiner(SolidEditor& editor, const SolidCriteria& criteria, ExecutionContext& context);
+
+  // Longest chain of points each nearer to its neighbours than the edge that caused it. Short
+  // chains leave some bad tetrahedra to the improvement, which mends most of them with far fewer
+  // points.
+  void set_max_depth(int depth) { max_depth_ = depth; }
+
+  // Until no tetrahedron is bad but the exempt and those whose points were refused.
+  // Errors: kElementLimit, kTimeLimit, kCancelled.
+  [[nodiscard]] Result<void> run();
+
+  [[nodiscard]] const SolidRefineCounters& counters() const { return counters_; }
+
+ private:
+  enum class Outcome : std::uint8_t { kInserted, kRefused };
+  // What asks for a point.
+  struct Cause {
+    double shortest = 0;  // edge of the bad tetrahedron
+    double least = 0;     // no vertex may be nearer to the new point than this, size aside
+    bool size = false;    // because of volume or edge length
+    std::uint8_t depth = 0;
+  };
+  struct Entry {
+    float key;
+    TetId t;
+    std::uint32_t version;
+    friend bool operator<(const Entry& a, const Entry& b) {
+      return a.key != b.key ? a.key < b.key : a.t > b.t;
+    }
+  };
+  // A subfacet as seen from one side.
+  struct Subfacet {
+    TetCopy at;
+    std::uint32_t face = 0;
+  };
+
+  void enqueue(TetId t);
+  void enqueue_added();
+  [[nodiscard]] bool still_bad(const Entry& e) const;
+  [[nodiscard]] Cause cause_of(TetId t) const;
+  [[nodiscard]] Outcome treat(TetId t);
+  [[nodiscard]] Outcome split_subfacet(Subfacet s, const Cause& cause);
+  [[nodiscard]] Outcome split_segment(TetCopy at, Corner a, Corner b, const Cause& cause);
+  [[nodiscard]] Outcome split_too_large(TetId t);
+  Outcome split_edge(TetId t, Corner a, Corner b, const Cause& cause);
+  [[nodiscard]] bool allowed(const Cavity& cavity, const Cause& cause, double share) const;
+  [[nodiscard]] Outcome insert(const Cavity& cavity,
+                               SolidVertexKind kind,
+                               std::int32_t parent,
+                               bool on_axis,
+                               const Cause& cause);
+  // The subfacet of the same facet across an edge of `s`; false at a subsegment or the facet's rim.
+  [[nodiscard]] bool cross_edge(Subfacet& s, Corner a, Corner b) const;
+
+  struct Encroached {
+    enum class What : std::uint8_t { kNothing, kSubfacet, kSubsegment };
+    What what = What::kNothing;
+    Subfacet subfacet;
+    TetCopy at;
+    Corner a, b;
+  };
+  [[nodiscard]] Encroached encroached_by(const Cavity& cavity, bool facets) const;
+
+  SolidEditor& editor_;
+  QuotientTetrahedralization& mesh_;
+  const SolidCriteria& criteria_;
+  ExecutionContext& context_;
+  std::priority_queue<Entry> queue_;
+  int max_depth_ = kMaxChain;
+  std::vector<std::uint8_t> depth_;  // per vertex
+  Cavity cavity_;
+  SolidRefineCounters counters_;
+};
+
+}  // namespace symcell

@@ -1,0 +1,58 @@
+// Keeps a changing surface within a distance of what it was, both ways.
+//
+// Forth: points of a new triangle lie near the old surface, which faces the same way there. Back:
+// samples of the old surface (corners, middles) each lie near the triangle that answers for them.
+// Nothing accumulates: the old surface stays the measure.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/surface/editable_surface.hpp"
+#include "core/surface/triangle_tree.hpp"
+
+namespace symcell {
+
+class DeviationGuard {
+ public:
+  DeviationGuard(const QuotientSurface& surface, double most);
+
+  [[nodiscard]] double most() const { return most_; }
+
+  // Whether triangles `gone` may become `planned` (some of the same ids); then `answers` are the
+  // planned triangle (index) that each sample of the gone ones goes to.
+  [[nodiscard]] bool allows(std::span<const std::int32_t> gone,
+                            std::span<const PlannedTriangle> planned);
+  // The same where the union of the triangles does not change: always allowed.
+  void follow(std::span<const std::int32_t> gone, std::span<const PlannedTriangle> planned);
+  // Makes the last answer true.
+  void commit(std::span<const std::int32_t> gone, std::span<const PlannedTriangle> planned);
+
+  // Triangle `t` had the number old[t] before.
+  void renumber(const std::vector<std::int32_t>& old);
+
+  // Mean height of the old surface over a triangle.
+  [[nodiscard]] double mean_height(const std::array<Point3, 3>& points) const;
+
+  // The point of the old surface nearest to p, if it is near.
+  [[nodiscard]] TriangleTree::Hit nearest(Point3 p, double reach) const {
+    return tree_.nearest(p, reach);
+  }
+
+ private:
+  [[nodiscard]] bool lies_on_old_surface(const PlannedTriangle& triangle) const;
+  [[nodiscard]] bool answers(std::span<const std::int32_t> gone,
+                             std::span<const PlannedTriangle> planned,
+                             double reach);
+
+  double most_;
+  TriangleTree tree_;
+  std::vector<Point3> normals_;  // of the old triangles, as the input had them
+  std::vector<Point3> samples_;
+  std::vector<double> areas_;                           // that samples stand for; 0 for corners
+  std::vector<std::vector<std::int32_t>> of_triangle_;  // samples each triangle answers for
+  std::vector<std::pair<std::int32_t, std::int32_t>> answers_;  // sample, index in `planned`
+};
+
+}  // namespace symcell

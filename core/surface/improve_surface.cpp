@@ -1,0 +1,427 @@
+#include "core/surface/improve_surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+
+#include "core/surface/constrained_fit.hpp"
+#include "core/surface/deviation_guard.hpp"
+#include "core/surface/dissolve_patches.hpp"
+#include "core/surface/editable_surface.hpp"
+#include "core/surface/indexed_surface.hpp"
+
+namespace symcell {
+namespace {
+
+// Shape of a triangle: height over longest side; 0.87 is equilateral. A collapse may leave shapes
+// this good, or no worse than they were; flips and moves mend them. At 0.3 regular fine meshes stay
+// as they are, at 0.15 shapes suffer for few triangles less.
+constexpr double kGoodShape = 0.25;
+// Triangles in planar patches get flipped later anyhow: they must only not be needles.
+constexpr double kGoodPlanarShape = 0.05;
+constexpr double kSliverShape = 0.02;
+constexpr int kMostPasses = 12;
+constexpr int kRounds = 10;
+// Triangles of curved parts flatter than this are split, down to sides of so many deviations.
+constexpr double kWantedShape = 0.42;
+constexpr double kLeastSplit = 10;
+// A pass that changes less than this share of the surface is the last one.
+constexpr double kWorthwhile = 0.005;
+// A flip or a move must raise the worst shape by this factor.
+constexpr double kBetter = 1.02;
+// A fit may lower it to this share.
+constexpr double kFitShape = 0.95;
+// Rounding that a vertex may be off the planes of its patches, of the extent.
+constexpr double kPlaneRounding = 1e-11;
+constexpr std::size_t kCheckEvery = 256;
+
+double shape_of(const std::array<Point3, 3>& p) {
+  const double longest = std::max(
+      {squared_distance(p[0], p[1]), squared_distance(p[1], p[2]), squared_distance(p[2], p[0])});
+  return longest > 0 ? length(area_normal(p[0], p[1], p[2])) / longest : 0;
+}
+
+// A triangle that has changed its place shows its own normal, unless it is a sliver.
+void refresh_normals(QuotientSurface& surface) {
+  const RotationTable rotations(surface.fold);
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    std::array<Point3, 3> p;
+    for (std::size_t i = 0; i < 3; ++i) {
+      p[i] = corner_point(surface, rotations, surface.triangles[t][i]);
+    }
+    if (shape_of(p) < kSliverShape) continue;
+    const Point3 n = area_normal(p[0], p[1], p[2]);
+    surface.normals[t] = (1 / length(n)) * n;
+  }
+}
+
+class Improver {
+ public:
+  Improver(EditableSurface surface, DeviationGuard& guard, ExecutionContext& context)
+      : mesh_(std::move(surface)), guard_(guard), context_(context) {
+    for (const Point3& p : mesh_.surface().points) extent_ = std::max(extent_, length(p));
+  }
+
+  // Fewer triangles.
+  Result<std::vector<std::array<std::uint8_t, 3>>> coarsen() {
+    for (int pass = 0; pass < kMostPasses; ++pass) {
+      auto collapsed = collapse_pass();
+      if (!collapsed) return tl::unexpected<Error>(collapsed.error());
+      auto ok = steps({&Improver::flip_pass, &Improver::move_pass});
+      if (!ok) return tl::unexpected<Error>(ok.error());
+      if (static_cast<double>(*collapsed) <= kWorthwhile * count()) break;
+    }
+    guard_.renumber(mesh_.compact());
+    return mesh_.marks();
+  }
+
+  // Better triangles.
+  Result<void> shape() {
+    shaping_ = true;
+    for (int round = 0; round < kRounds; ++round) {
+      auto cut = split_pass();
+      if (!cut) return tl::unexpected<Error>(cut.error());
+      auto ok = steps({&Improver::flip_pass, &Improver::move_pass, &Improver::collapse_pass,
+                       &Improver::flip_pass, &Improver::move_pass});
+      if (!ok) return ok;
+      if (static_cast<double>(*cut) <= kWorthwhile * count()) break;
+    }
+    auto ok = steps({&Improver::fit_pass, &Improver::flip_pass, &Improver::fit_pass});
+    guard_.renumber(mesh_.compact());
+    return ok;
+  }
+
+ private:
+  using Pass = Result<std::size_t> (Improver::*)();
+
+  Result<void> steps(std::initializer_list<Pass> passes) {
+    for (const Pass pass : passes) {
+      auto done = (this->*pass)();
+      if (!done) return tl::unexpected<Error>(done.error());
+    }
+    return {};
+  }
+
+  struct Candidate {
+    double squared;
+    std::int32_t triangle, side;
+  };
+
+  [[nodiscard]] double count() const {
+    return static_cast<double>(mesh_.surface().triangles.size());
+  }
+  [[nodiscard]] bool planar(std::int32_t t) const { return mesh_.surface().patch[t] >= 0; }
+
+  [[nodiscard]] std::vector<Candidate> edges_by_length() const {
+    std::vector<Candidate> edges;
+    const auto count = static_cast<std::int32_t>(mesh_.surface().triangles.size());
+    for (std::int32_t t = 0; t < count; ++t) {
+      if (!mesh_.alive(t)) continue;
+      const auto p = mesh_.points(t);
+      const QuotientTriangle& c = mesh_.surface().triangles[t];
+      for (std::int32_t i = 0; i < 3; ++i) {
+        if (c[i].orbit > c[(i + 1) % 3].orbit) continue;  // from one of its two triangles
+        edges.push_back({squared_distance(p[i], p[(i + 1) % 3]), t, i});
+      }
+    }
+    std::sort(edges.begin(), edges.end(), [](const Candidate& a, const Candidate& b) {
+      return a.squared != b.squared
+                 ? a.squared < b.squared
+                 : (a.triangle != b.triangle ? a.triangle < b.triangle : a.side < b.side);
+    });
+    return edges;
+  }
+
+  Result<std::size_t> collapse_pass() {
+    std::size_t done = 0, seen = 0;
+    touched_.assign(mesh_.surface().points.size(), false);
+    for (const Candidate& e : edges_by_length()) {
+      if (++seen % kCheckEvery == 0) {
+        if (auto state = context_.check(); !state) return tl::unexpected<Error>(state.error());
+      }
+      if (!mesh_.alive(e.triangle)) continue;
+      const QuotientTriangle& c = mesh_.surface().triangles[e.triangle];
+      const std::int32_t a = c[e.side].orbit, b = c[(e.side + 1) % 3].orbit;
+      if (touched_[a] || touched_[b]) continue;
+      done += try_collapse(e.triangle, e.side) ? 1 : 0;
+    }
+    return done;
+  }
+
+  // The better of the two directions, if either is allowed.
+  bool try_collapse(std::int32_t t, std::int32_t side) {
+    struct Option {
+      CollapsePlan plan;
+      double shape;
+    };
+    std::vector<Option> options;
+    for (const bool to_start : {false, true}) {
+      if (!mesh_.may_leave(t, side, !to_start)) continue;
+      auto plan = mesh_.plan_collapse(t, side, to_start);
+      if (!plan) continue;
+      const auto shape = acceptable_shape(*plan);
+      if (shape) options.push_back({std::move(*plan), *shape});
+    }
+    std::stable_sort(options.begin(), options.end(),
+                     [](const Option& a, const Option& b) { return a.shape > b.shape; });
+    for (Option& option : options) {
+      const CollapsePlan& plan = option.plan;
+      std::vector<std::int32_t> gone(plan.removed.begin(), plan.removed.end());
+      for (const PlannedTriangle& p : plan.changed) gone.push_back(p.id);
+      const bool flat =
+          std::all_of(gone.begin(), gone.end(), [this](std::int32_t g) { return planar(g); });
+      if (flat) {
+        guard_.follow(gone, plan.changed);
+      } else if (!guard_.allows(gone, plan.changed)) {
+        continue;
+      }
+      guard_.commit(gone, plan.changed);
+      mesh_.collapse(plan);
+      for (const PlannedTriangle& p : plan.changed) {
+        for (const OrbitVertex& v : p.corners) touched_[v.orbit] = true;
+      }
+      return true;
+    }
+    return false;
+  }
+
+  // The worst shape that would result, if planes are kept, nothing turns over and no shape gets
+  // worse than it may.
+  [[nodiscard]] std::optional<double> acceptable_shape(const CollapsePlan& plan) const {
+    double before = 1, before_planar = 1, after = 1, after_planar = 1;
+    const auto note = [this](std::int32_t t, const std::array<Point3, 3>& p, double& curved,
+                             double& flat) {
+      double& worst = planar(t) ? flat : curved;
+      worst = std::min(worst, shape_of(p));
+    };
+    for (const std::int32_t t : plan.removed) note(t, mesh_.points(t), before, before_planar);
+    for (const PlannedTriangle& p : plan.changed) {
+      note(p.id, mesh_.points(p.id), before, before_planar);
+      note(p.id, p.points, after, after_planar);
+      if (planar(p.id) && !keeps_plane(p)) return std::nullopt;
+    }
+    if (shaping_ ? after <= kBetter * before : after < std::min(before, kGoodShape)) {
+      return std::nullopt;
+    }
+    if (after_planar < std::min(before_planar, kGoodPlanarShape)) return std::nullopt;
+    return std::min(after, after_planar);
+  }
+
+  [[nodiscard]] bool keeps_plane(const PlannedTriangle& p) const {
+    const Plane plane = mesh_.plane(p.id);
+    for (const Point3& q : p.points) {
+      if (std::abs(plane.height(q)) > kPlaneRounding * extent_) return false;
+    }
+    const Point3 n = area_normal(p.points[0], p.points[1], p.points[2]);
+    return dot(n, plane.normal) > 0;
+  }
+
+  // Triangles of curved parts that are too thin are halved across their longest side.
+  Result<std::size_t> split_pass() {
+    std::size_t done = 0;
+    const auto count = static_cast<std::int32_t>(mesh_.surface().triangles.size());
+    const double least = kLeastSplit * guard_.most();
+    for (std::int32_t t = 0; t < count; ++t) {
+      if (static_cast<std::size_t>(t) % kCheckEvery == 0) {
+        if (auto state = context_.check(); !state) return tl::unexpected<Error>(state.error());
+      }
+      if (!mesh_.alive(t) || planar(t)) continue;
+      const auto p = mesh_.points(t);
+      if (shape_of(p) >= kWantedShape) continue;
+      std::int32_t longest = 0;
+      const auto squared = [&p](std::int32_t i) { return squared_distance(p[i], p[(i + 1) % 3]); };
+      for (const std::int32_t i : {1, 2}) {
+        if (squared(i) > squared(longest)) longest = i;
+      }
+      if (squared(longest) < least * least) continue;
+      // Bands thinner than the deviation, between edges that stay: halving makes more of them.
+      if (length(area_normal(p[0], p[1], p[2])) < guard_.most() * std::sqrt(squared(longest))) {
+        continue;
+      }
+      const QuotientNeighbour other = mesh_.across(t, longest);
+      const std::vector<PlannedTriangle> changed = mesh_.split(t, longest);
+      if (changed.empty()) continue;
+      const std::array<std::int32_t, 2> gone{t, other.triangle};
+      guard_.follow(gone, changed);
+      guard_.commit(gone, changed);
+      ++done;
+    }
+    return done;
+  }
+
+  Result<std::size_t> flip_pass() {
+    std::size_t done = 0;
+    const auto count = static_cast<std::int32_t>(mesh_.surface().triangles.size());
+    for (std::int32_t t = 0; t < count; ++t) {
+      if (static_cast<std::size_t>(t) % kCheckEvery == 0) {
+        if (auto state = context_.check(); !state) return tl::unexpected<Error>(state.error());
+      }
+      for (std::int32_t side = 0; side < 3 && mesh_.alive(t); ++side) {
+        done += try_flip(t, side) ? 1 : 0;
+      }
+    }
+    return done;
+  }
+
+  bool try_flip(std::int32_t t, std::int32_t side) {
+    if (mesh_.mark(t, side) != 0) return false;
+    const QuotientNeighbour other = mesh_.across(t, side);
+    if (other.triangle < 0 || other.exponent != 0) return false;
+    const QuotientSurface& s = mesh_.surface();
+    if (s.patch[t] != s.patch[other.triangle]) return false;
+    if (planar(t) && s.frame[t] != s.frame[other.triangle]) return false;
+    const double before =
+        std::min(shape_of(mesh_.points(t)), shape_of(mesh_.points(other.triangle)));
+    const auto plan = mesh_.plan_flip(t, side);
+    if (!plan) return false;
+    const double after =
+        std::min(shape_of(plan->changed[0].points), shape_of(plan->changed[1].points));
+    if (after <= kBetter * before) return false;
+    const std::array<std::int32_t, 2> gone{t, other.triangle};
+    if (planar(t)) {
+      if (!keeps_plane(plan->changed[0]) || !keeps_plane(plan->changed[1])) return false;
+      guard_.follow(gone, plan->changed);
+    } else if (!guard_.allows(gone, plan->changed)) {
+      return false;
+    }
+    guard_.commit(gone, plan->changed);
+    mesh_.flip(*plan);
+    return true;
+  }
+
+  Result<std::size_t> move_pass() {
+    std::size_t done = 0;
+    const QuotientSurface& s = mesh_.surface();
+    for (std::size_t i = 0; i < s.points.size(); ++i) {
+      if (i % kCheckEvery == 0) {
+        if (auto state = context_.check(); !state) return tl::unexpected<Error>(state.error());
+      }
+      done += try_move(static_cast<std::int32_t>(i)) ? 1 : 0;
+    }
+    return done;
+  }
+
+  // A vertex inside a curved part, to the middle of its neighbours, on the old surface.
+  bool try_move(std::int32_t v) {
+    const QuotientSurface& s = mesh_.surface();
+    if (s.on_cut[v] != 0 || mesh_.star(v).empty()) return false;
+    double before = 1, weight = 0;
+    Point3 middle;
+    for (const std::int32_t t : mesh_.star(v)) {
+      if (planar(t)) return false;
+      for (std::int32_t i = 0; i < 3; ++i) {
+        const QuotientTriangle& c = s.triangles[t];
+        const bool at = c[i].orbit == v || c[(i + 1) % 3].orbit == v;
+        if (at && mesh_.mark(t, i) != 0) return false;
+      }
+      const auto p = mesh_.points(t);
+      before = std::min(before, shape_of(p));
+      const double area = length(area_normal(p[0], p[1], p[2]));
+      weight += area;
+      middle = middle + (area / 3) * (p[0] + p[1] + p[2]);
+    }
+    if (!(weight > 0)) return false;
+    const auto hit = guard_.nearest((1 / weight) * middle, 10 * guard_.most());
+    if (hit.triangle < 0) return false;
+    const std::vector<PlannedTriangle> planned = mesh_.plan_move(v, hit.point);
+    double after = 1;
+    for (const PlannedTriangle& p : planned) after = std::min(after, shape_of(p.points));
+    if (after <= kBetter * before) return false;
+    const std::vector<std::int32_t> gone = mesh_.star(v);
+    if (!guard_.allows(gone, planned)) return false;
+    guard_.commit(gone, planned);
+    mesh_.move(v, hit.point);
+    return true;
+  }
+
+  // Vertices of curved parts, so that the surface runs through the middle of what it stands for:
+  // chords inside a convex part would lose volume.
+  Result<std::size_t> fit_pass() {
+    std::size_t done = 0;
+    const QuotientSurface& s = mesh_.surface();
+    // All heights first: where all vertices of a triangle follow, it follows once.
+    heights_.assign(s.triangles.size(), 0);
+    for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+      const auto id = static_cast<std::int32_t>(t);
+      if (mesh_.alive(id) && !planar(id)) heights_[t] = guard_.mean_height(mesh_.points(id));
+    }
+    for (std::size_t i = 0; i < s.points.size(); ++i) {
+      if (i % kCheckEvery == 0) {
+        if (auto state = context_.check(); !state) return tl::unexpected<Error>(state.error());
+      }
+      done += try_fit(static_cast<std::int32_t>(i)) ? 1 : 0;
+    }
+    return done;
+  }
+
+  bool try_fit(std::int32_t v) {
+    const QuotientSurface& s = mesh_.surface();
+    if (s.on_axis[v] != 0 || mesh_.star(v).empty()) return false;
+    ConstrainedFit fit;
+    if (s.on_cut[v] != 0) fit.keep({-std::sin(s.start_angle), std::cos(s.start_angle), 0});
+    double before = 1;
+    bool curved = false;
+    for (const std::int32_t t : mesh_.star(v)) {
+      const auto p = mesh_.points(t);
+      before = std::min(before, shape_of(p));
+      const Point3 n = area_normal(p[0], p[1], p[2]);
+      const double twice = length(n);
+      if (!(twice > 0)) return false;
+      const Point3 here = mesh_.in_frame_of(v, t, (1 / twice) * n);
+      if (planar(t)) {
+        fit.keep(here);
+        continue;
+      }
+      curved = true;
+      fit.pull(here, heights_[t], twice);
+    }
+    if (!curved) return false;
+    const Point3 place = s.points[v] + fit.displacement();
+    const std::vector<PlannedTriangle> planned = mesh_.plan_move(v, place);
+    double after = 1;
+    for (const PlannedTriangle& p : planned) {
+      after = std::min(after, shape_of(p.points));
+      if (planar(p.id) && !keeps_plane(p)) return false;
+    }
+    if (after < kFitShape * before) return false;
+    const std::vector<std::int32_t> gone = mesh_.star(v);
+    if (!guard_.allows(gone, planned)) return false;
+    guard_.commit(gone, planned);
+    mesh_.move(v, place);
+    return true;
+  }
+
+  EditableSurface mesh_;
+  DeviationGuard& guard_;
+  ExecutionContext& context_;
+  std::vector<bool> touched_;
+  std::vector<double> heights_;  // per triangle: of the old surface over it
+  bool shaping_ = false;         // now only better shapes count, not fewer triangles
+  double extent_ = 0;
+};
+
+}  // namespace
+
+Result<void> improve_surface(QuotientSurface& surface,
+                             double most,
+                             const FlatnessTolerances& flatness,
+                             ExecutionContext& context) {
+  if (auto ok = dissolve_narrow_patches(surface, most); !ok) return ok;
+  DeviationGuard guard(surface, most);
+  auto editable = EditableSurface::create(surface);
+  if (!editable) return tl::unexpected<Error>(editable.error());
+  auto marks = Improver(std::move(*editable), guard, context).coarsen();
+  if (!marks) return tl::unexpected<Error>(marks.error());
+  refresh_normals(surface);
+  if (auto ok = flatten_planar_patches(surface, flatness, context); !ok) return ok;
+  if (auto ok = dissolve_sharp_patches(surface, most); !ok) return ok;
+  editable = EditableSurface::create(surface, std::move(*marks));
+  if (!editable) return tl::unexpected<Error>(editable.error());
+  if (auto ok = Improver(std::move(*editable), guard, context).shape(); !ok) return ok;
+  drop_bent_triangles(surface);
+  return {};
+}
+
+}  // namespace symcell

@@ -1,0 +1,20 @@
+target_sources(
+  symcell_core
+  PRIVATE geometry/box_tree.cpp
+          geometry/facet_triangulation.cpp
+          geometry/point_tree.cpp
+          geometry/symmetric_eigen.cpp
+          model/check_plc_cells.cpp
+          model/conform_plc.cpp
+          model/plc_cells.cpp
+          model/plc_complex.cpp
+          model/plc_intersections.cpp
+          model/validate_plc.cpp
+          symmetry/axis_cuts.cpp
+          symmetry/plc_axes.cpp
+          symmetry/plc_cut_angles.cpp
+          symmetry/plc_fit.cpp
+          symmetry/plc_sector.cpp
+          symmetry/plc_symmetry.cpp
+          symmetry/symmetric_plc.cpp
+          symmetry/symmetrise_plc.cpp)

@@ -1,0 +1,227 @@
+#include "core/symmetry/surface_sector_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/base/random.hpp"
+#include "core/model/describe.hpp"
+#include "core/surface/improve_surface.hpp"
+#include "core/surface/planar_patches.hpp"
+#include "core/surface/self_intersections.hpp"
+#include "core/symmetry/glue_cuts.hpp"
+#include "core/symmetry/quotient_to_sector.hpp"
+#include "core/symmetry/wedge_cut.hpp"
+
+namespace symcell {
+namespace {
+
+// Vertices nearer to a cut than these shares of the tolerance are moved onto it. The first is what
+// worked best on real files; the others are for those it fails on.
+constexpr std::array<double, 3> kSnapShares = {0.3, 1, 0};
+constexpr std::int32_t kCandidatesPerSnap = 12;
+// Vertices of the two cut curves nearer than this share of the tolerance are one.
+constexpr double kMergeShare = 0.3;
+// Coordinates come in single precision or with six digits: noise as a share of the largest one, and
+// of the diameter at least.
+constexpr double kSinglePrecision = 2.5e-7;
+constexpr double kLeastNoiseRel = 1e-6;
+// Facets of CAD parts may be so far from flat, of the tolerance, by the axis' own error.
+constexpr double kFlatShareOfTolerance = 0.02;
+// Shares of the tolerance that the improvement of the triangles may use, tried in turn until hardly
+// any thin triangle is left; with the symmetry error they stay below kUsedShare where that leaves
+// them anything.
+constexpr std::array<double, 4> kImproveShares = {0.35, 0.3, 0.25, 0.2};
+constexpr double kLeastImproveShare = 0.1;
+constexpr double kUsedShare = 0.8;
+// So many triangles of curved parts may be thin: height below a fifth of the longest side.
+constexpr double kThinShape = 0.2;
+constexpr double kThinShare = 0.002;
+// A sector's volume times n against the input's.
+constexpr double kVolumeRel = 1e-3;
+
+IndexedSurface restored_sector(const QuotientSurface& s) {
+  const RotationTable rotations(s.fold);
+  IndexedSurface flat;
+  std::vector<std::int32_t> lower(s.points.size(), -1), higher(s.points.size(), -1);
+  for (const QuotientTriangle& t : s.triangles) {
+    Triangle corners{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::int32_t& id = (t[i].exponent == 0 ? lower : higher)[t[i].orbit];
+      if (id < 0) {
+        id = static_cast<std::int32_t>(flat.points.size());
+        flat.points.push_back(corner_point(s, rotations, t[i]));
+      }
+      corners[i] = id;
+    }
+    flat.triangles.push_back(corners);
+  }
+  return flat;
+}
+
+double share_of_thin_triangles(const QuotientSurface& s) {
+  const RotationTable rotations(s.fold);
+  std::size_t thin = 0;
+  for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+    if (s.patch[t] >= 0) continue;
+    const Point3 a = corner_point(s, rotations, s.triangles[t][0]);
+    const Point3 b = corner_point(s, rotations, s.triangles[t][1]);
+    const Point3 c = corner_point(s, rotations, s.triangles[t][2]);
+    const double longest =
+        std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)});
+    thin += length(area_normal(a, b, c)) < kThinShape * longest ? 1 : 0;
+  }
+  return static_cast<double>(thin) / static_cast<double>(s.triangles.size());
+}
+
+}  // namespace
+
+SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean,
+                                         SolidSymmetry symmetry,
+                                         double tolerance)
+    : symmetry_(std::move(symmetry)),
+      repairs_(std::move(clean.repairs)),
+      tolerance_(tolerance),
+      volume_(clean.volume),
+      full_(std::move(clean.surface)) {
+  double largest = 0;
+  for (Point3& p : full_.points) {
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    p = symmetry_.frame.to_local(p);
+  }
+  noise_ = std::max(kSinglePrecision * largest, kLeastNoiseRel * symmetry_.diameter);
+  tree_ = TriangleTree(full_.points, full_.triangles);
+  choose_candidates();
+}
+
+// Angles in the middle of the widest gaps between vertices, modulo the sector, each in a sector of
+// its own; the same angles with each way of snapping.
+void SurfaceSectorSource::choose_candidates() {
+  if (symmetry_.fold == 1) {
+    candidates_.push_back({0, 0});
+    return;
+  }
+  const double sector = 2 * std::numbers::pi / symmetry_.fold;
+  std::vector<double> angles;
+  for (const Point3& p : full_.points) {
+    if (std::hypot(p.x, p.y) <= tolerance_) continue;
+    const double angle = std::fmod(std::atan2(p.y, p.x) + 2 * std::numbers::pi, sector);
+    angles.push_back(angle);
+  }
+  std::sort(angles.begin(), angles.end());
+  struct Gap {
+    double width, middle;
+  };
+  std::vector<Gap> gaps;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double next = i + 1 < angles.size() ? angles[i + 1] : angles[0] + sector;
+    gaps.push_back({next - angles[i], (angles[i] + next) / 2});
+  }
+  std::sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) {
+    return a.width != b.width ? a.width > b.width : a.middle < b.middle;
+  });
+  Random random(1);
+  for (const double snap : kSnapShares) {
+    for (std::int32_t i = 0; i < kCandidatesPerSnap; ++i) {
+      const auto which = std::min(static_cast<std::size_t>(i), gaps.size() - 1);
+      const auto copy = static_cast<std::int32_t>(random.next() % symmetry_.fold);
+      candidates_.push_back({gaps[which].middle + copy * sector, snap * tolerance_});
+    }
+  }
+}
+
+Result<void> SurfaceSectorSource::improve(QuotientSurface& surface,
+                                          const FlatnessTolerances& flatness,
+                                          ExecutionContext& context) const {
+  const QuotientSurface given = surface;
+  const double left = kUsedShare * tolerance_ - symmetry_.error_rel * symmetry_.diameter;
+  double least = 2;
+  double before = 0;
+  for (const double share : kImproveShares) {
+    const double most = std::clamp(left, kLeastImproveShare * tolerance_, share * tolerance_);
+    if (most == before) continue;
+    before = most;
+    QuotientSurface improved = given;
+    if (auto done = improve_surface(improved, most, flatness, context); !done) return done;
+    const double thin = share_of_thin_triangles(improved);
+    if (thin < least) {
+      least = thin;
+      surface = std::move(improved);
+    }
+    if (least <= kThinShare) break;
+  }
+  return {};
+}
+
+// Over the whole model: every copy near the input, all of the input near a copy.
+Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
+                                                  ExecutionContext& context) const {
+  const RotationTable rotations(symmetry_.fold);
+  const auto failure = fail(ErrorCode::kInternal, "the sector is too far from the surface");
+  IndexedSurface all;
+  for (std::int32_t k = 0; k < symmetry_.fold; ++k) {
+    if (auto state = context.check(); !state) return state;
+    const auto first = static_cast<std::int32_t>(all.points.size());
+    for (const Point3& p : sector.points) all.points.push_back(rotations.rotate(p, k));
+    for (const Triangle& t : sector.triangles) {
+      all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+  }
+  if (!all_near(all, tree_)) return failure;
+  if (auto state = context.check(); !state) return state;
+  return all_near(full_, TriangleTree(all.points, all.triangles)) ? Result<void>{} : failure;
+}
+
+bool SurfaceSectorSource::all_near(const IndexedSurface& surface, const TriangleTree& tree) const {
+  const auto near = [&](Point3 p) { return tree.within(p, tolerance_); };
+  return std::all_of(surface.points.begin(), surface.points.end(), near) &&
+         std::all_of(surface.triangles.begin(), surface.triangles.end(), [&](const Triangle& t) {
+           return near((1.0 / 3) *
+                       (surface.points[t[0]] + surface.points[t[1]] + surface.points[t[2]]));
+         });
+}
+
+Result<SolidSector> SurfaceSectorSource::sector(std::int32_t index,
+                                                ExecutionContext& context) const {
+  const Candidate& candidate = candidates_[index];
+  QuotientSurface quotient;
+  if (symmetry_.fold == 1) {
+    quotient.points = full_.points;
+    quotient.on_axis.assign(full_.points.size(), 0);
+    quotient.on_cut.assign(full_.points.size(), 0);
+    for (const Triangle& t : full_.triangles) {
+      quotient.triangles.push_back({OrbitVertex{t[0], 0}, {t[1], 0}, {t[2], 0}});
+      const Point3 n = area_normal(full_, t);
+      quotient.normals.push_back((1 / length(n)) * n);
+    }
+  } else {
+    auto patch = cut_wedge(full_, symmetry_.fold, candidate.start_angle, candidate.snap);
+    if (!patch) return tl::unexpected<Error>(patch.error());
+    auto glued = glue_cuts(std::move(*patch), 2 * tolerance_, kMergeShare * tolerance_, context);
+    if (!glued) return tl::unexpected<Error>(glued.error());
+    quotient = std::move(glued->surface);
+  }
+  const FlatnessTolerances flatness{noise_, std::max(noise_, kFlatShareOfTolerance * tolerance_)};
+  if (auto flat = flatten_planar_patches(quotient, flatness, context); !flat) {
+    return tl::unexpected<Error>(flat.error());
+  }
+  if (auto improved = improve(quotient, flatness, context); !improved) {
+    return tl::unexpected<Error>(improved.error());
+  }
+  const double volume = full_volume(quotient);
+  if (!(std::abs(volume - volume_) <= kVolumeRel * std::abs(volume_))) {
+    return fail(ErrorCode::kInternal, "the sector's volume is wrong: " + describe_rounded(volume) +
+                                          " for " + describe_rounded(volume_));
+  }
+  const IndexedSurface restored = restored_sector(quotient);
+  if (auto near = check_distances(restored, context); !near) {
+    return tl::unexpected<Error>(near.error());
+  }
+  auto crossing = self_intersections(restored, 1, context);
+  if (!crossing) return tl::unexpected<Error>(crossing.error());
+  if (!crossing->empty()) return fail(ErrorCode::kInternal, "the sector intersects itself");
+  return quotient_to_sector(quotient);
+}
+
+}  // namespace symcell

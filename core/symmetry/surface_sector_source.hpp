@@ -1,0 +1,52 @@
+// Exact sectors of a closed surface that is symmetric in shape but not in its triangles.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/surface/clean_surface.hpp"
+#include "core/surface/planar_patches.hpp"
+#include "core/surface/quotient_surface.hpp"
+#include "core/surface/triangle_tree.hpp"
+#include "core/symmetry/sector_source.hpp"
+
+namespace symcell {
+
+class SurfaceSectorSource final : public SectorSource {
+ public:
+  // `clean`: without problem, input coordinates.  `tolerance`: input units.
+  SurfaceSectorSource(CleanSurface clean, SolidSymmetry symmetry, double tolerance);
+
+  [[nodiscard]] const SolidSymmetry& symmetry() const override { return symmetry_; }
+  [[nodiscard]] const std::vector<std::string>& repairs() const override { return repairs_; }
+  [[nodiscard]] std::int32_t candidates() const override {
+    return static_cast<std::int32_t>(candidates_.size());
+  }
+  [[nodiscard]] Result<SolidSector> sector(std::int32_t index,
+                                           ExecutionContext& context) const override;
+
+ private:
+  struct Candidate {
+    double start_angle;
+    double snap;  // length
+  };
+  void choose_candidates();
+  [[nodiscard]] Result<void> improve(QuotientSurface& surface,
+                                     const FlatnessTolerances& flatness,
+                                     ExecutionContext& context) const;
+  [[nodiscard]] Result<void> check_distances(const IndexedSurface& sector,
+                                             ExecutionContext& context) const;
+  [[nodiscard]] bool all_near(const IndexedSurface& surface, const TriangleTree& tree) const;
+
+  SolidSymmetry symmetry_;
+  std::vector<std::string> repairs_;
+  double tolerance_;
+  double noise_;         // of coordinates
+  double volume_;        // of the input
+  IndexedSurface full_;  // local frame
+  TriangleTree tree_;    // of full_
+  std::vector<Candidate> candidates_;
+};
+
+}  // namespace symcell

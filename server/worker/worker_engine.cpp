@@ -1,0 +1,150 @@
+#include "server/worker/worker_engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "server/base/metrics.hpp"
+#include "server/jobs/local_engine.hpp"
+
+namespace symcell::server {
+namespace {
+
+// A process killed from outside may have been unlucky: another job took the memory. So often it is
+// tried; a crash of its own making is not repeated, the same model would crash again.
+constexpr int kMaxTries = 3;
+// To read the largest model takes seconds; this ends what hangs.
+constexpr double kMaxReadSeconds = 60;
+// Read, a model takes a few times its bytes.
+constexpr std::uintmax_t kMaxBytesReadHere = std::uintmax_t{8} << 20U;
+// What a job may take beyond its time limit before the kernel ends it, should the server not.
+constexpr std::uint64_t kCpuMarginSeconds = 5;
+
+class LargeRead {
+ public:
+  explicit LargeRead(std::counting_semaphore<>& places) : places_(places) { places_.acquire(); }
+  ~LargeRead() { places_.release(); }
+  LargeRead(const LargeRead&) = delete;
+  LargeRead& operator=(const LargeRead&) = delete;
+
+ private:
+  std::counting_semaphore<>& places_;
+};
+
+// 0 is no limit.
+std::uint64_t lower_limit(std::uint64_t a, std::uint64_t b) {
+  return a == 0 || b == 0 ? std::max(a, b) : std::min(a, b);
+}
+
+}  // namespace
+
+WorkerEngine::WorkerEngine(WorkerSettings settings, Logger& logger)
+    : settings_(std::move(settings)), logger_(logger), pool_(settings_.pool, logger) {
+}
+
+WorkerLimits WorkerEngine::limits_of(const MeshOptions& options) const {
+  constexpr double kLongest = 1e9;
+  std::uint64_t cpu_seconds = settings_.cpu_seconds;
+  if (options.time_limit_s < kLongest) {
+    const auto by_time =
+        static_cast<std::uint64_t>(std::ceil(options.time_limit_s)) + kCpuMarginSeconds;
+    cpu_seconds = lower_limit(cpu_seconds, by_time);
+  }
+  return {lower_limit(settings_.memory_bytes, options.memory_limit_bytes), cpu_seconds};
+}
+
+TaskOutcome WorkerEngine::run_once(const RequestMessage& request, ExecutionContext& context) {
+  Result<WorkerPool::Lease> worker = pool_.acquire(context);
+  if (!worker) return {tl::unexpected(worker.error())};
+  const std::int64_t pid = (*worker)->pid();
+  TaskOutcome outcome = (*worker)->run(request, context);
+  pool_.give_back(std::move(*worker));
+  if (outcome.end) {
+    ++ends_[static_cast<std::size_t>(*outcome.end)];
+    logger_.warning("worker_ended", {{"pid", pid},
+                                     {"reason", end_kind_name(*outcome.end)},
+                                     {"model", request.job.model.native()},
+                                     {"stderr", outcome.last_words}});
+  }
+  return outcome;
+}
+
+Result<std::string> WorkerEngine::run_request(const RequestMessage& request,
+                                              ExecutionContext& context) {
+  for (int tries = 1;; ++tries) {
+    TaskOutcome outcome = run_once(request, context);
+    const bool again =
+        outcome.end == EndKind::kOutside && tries < kMaxTries && !context.cancelled();
+    if (!again) return std::move(outcome.document);
+    std::error_code ignored;
+    std::filesystem::remove(request.job.cell, ignored);
+    std::filesystem::remove(request.job.statistics, ignored);
+  }
+}
+
+Result<void> WorkerEngine::run(const EngineJob& job, ExecutionContext& context) {
+  const auto done = run_request(
+      {.task = WorkerTask::kMesh, .job = job, .limits = limits_of(job.options)}, context);
+  if (!done) return tl::unexpected(done.error());
+  return {};
+}
+
+Result<ModelFormat> WorkerEngine::recognise(const std::filesystem::path& model,
+                                            std::optional<ModelFormat> promised,
+                                            ExecutionContext& context) {
+  if (std::filesystem::file_size(model) <= kMaxBytesReadHere) {
+    return LocalEngine().recognise(model, promised, context);
+  }
+  RequestMessage request;
+  request.task = WorkerTask::kRecognise;
+  request.job.model = model;
+  request.job.model_format = promised.value_or(ModelFormat::kPslgJson);
+  request.job.options.time_limit_s = kMaxReadSeconds;
+  request.format_is_known = promised.has_value();
+  request.limits = limits_of(request.job.options);
+  const LargeRead place(large_reads_);
+  const auto name = run_request(request, context);
+  if (!name) return tl::unexpected(name.error());
+  if (const auto format = model_format_of_name(*name)) return *format;
+  return fail(ErrorCode::kInternal, "a worker names an unknown format: " + *name);
+}
+
+Result<std::string> WorkerEngine::inspect(const std::filesystem::path& model,
+                                          ModelFormat format,
+                                          const MeshOptions& options,
+                                          ExecutionContext& context) {
+  RequestMessage request;
+  request.task = WorkerTask::kInspect;
+  request.limits = limits_of(options);
+  request.job.model = model;
+  request.job.model_format = format;
+  request.job.options = options;
+  return run_request(request, context);
+}
+
+void WorkerEngine::append_metrics(std::string& text) const {
+  const PoolCounts counts = pool_.counts();
+  Metrics::append_gauge_header(text, "symcell_worker_processes", "Worker processes by state.");
+  Metrics::append_sample(text, "symcell_worker_processes", {{"state", "idle"}},
+                         static_cast<double>(counts.idle));
+  Metrics::append_sample(text, "symcell_worker_processes", {{"state", "busy"}},
+                         static_cast<double>(counts.busy));
+  Metrics::append_counter_header(text, "symcell_worker_starts_total", "Worker processes started.");
+  Metrics::append_sample(text, "symcell_worker_starts_total", {},
+                         static_cast<double>(counts.started));
+  Metrics::append_counter_header(
+      text, "symcell_worker_ends_total",
+      "Worker processes that ended, by reason: retired after their share of requests, killed by "
+      "the "
+      "server (cancelled, time_limit), memory_limit, crash, or killed from outside.");
+  Metrics::append_sample(text, "symcell_worker_ends_total", {{"reason", "retired"}},
+                         static_cast<double>(counts.retired));
+  for (std::size_t kind = 0; kind < ends_.size(); ++kind) {
+    Metrics::append_sample(text, "symcell_worker_ends_total",
+                           {{"reason", end_kind_name(static_cast<EndKind>(kind))}},
+                           static_cast<double>(ends_[kind].load()));
+  }
+}
+
+}  // namespace symcell::server

@@ -1,0 +1,45 @@
+"""Cells cut from hand-made quotient meshes through the independent checker beside the tree.
+
+prism_check.py --writer PROGRAM
+Exit 77 (skipped) where the checker or its packages are absent.
+"""
+import argparse
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CHECKER = ROOT.parent / "shared" / "tools" / "meshcheck.py"
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--writer", required=True)
+    options = parser.parse_args()
+    try:
+        import numpy, scipy  # noqa: F401  the checker's
+    except ImportError as error:
+        print(f"SKIPPED: {error}")
+        return 77
+    if not CHECKER.exists():
+        print("SKIPPED: ../shared is absent")
+        return 77
+    failed = 0
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        subprocess.run([options.writer, folder], check=True)
+        models = sorted(folder.glob("*.json"), key=lambda p: int(p.stem))
+        for model in models:
+            checked = subprocess.run(
+                [sys.executable, CHECKER, model.with_suffix(".cell.vtu"), "--full",
+                 model.with_suffix(".full.vtu"), "--model", model, "--quiet"],
+                capture_output=True, text=True, timeout=120)
+            good = checked.returncode == 0
+            failed += not good
+            print(model.stem, "ok" if good else checked.stdout + checked.stderr)
+    return 1 if failed or not models else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,231 @@
+"""Worker processes: what happens to a job, and to everything else, when one crashes, loops, takes all
+memory, or is killed. Faults on purpose: see server/worker/worker_main.hpp."""
+
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import time
+import unittest
+
+from symcell_server import Server, binary, long_options, square, until, without_sanitizer
+
+CRASH, ABORT, HANG, MEMORY, EXIT = 1001, 1002, 1003, 1004, 1005
+FAULTS = f"crash={CRASH},abort={ABORT},hang={HANG},memory={MEMORY},exit={EXIT}"
+
+
+def processes():
+    """{pid: (parent, command line)} of all live processes."""
+    found = {}
+    for entry in pathlib.Path("/proc").iterdir():
+        if not entry.name.isdigit():
+            continue
+        try:
+            status = (entry / "status").read_text()
+            command = (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode()
+        except OSError:
+            continue
+        if re.search(r"^State:\s+Z", status, re.M):
+            continue
+        found[int(entry.name)] = (int(re.search(r"^PPid:\s+(\d+)", status, re.M)[1]), command)
+    return found
+
+
+def workers_of(server_pid):
+    return sorted(pid for pid, (parent, command) in processes().items()
+                  if parent == server_pid and command.startswith("symcell worker"))
+
+
+def cpu_ticks(pid):
+    fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return int(fields[11]) + int(fields[12])
+
+
+class WorkersTest(unittest.TestCase):
+    def start(self, **flags):
+        self.server = Server(workers=1, **flags)
+        self.addCleanup(self.server.remove)
+        self.server.start({"SYMCELL_WORKER_FAULTS": FAULTS})
+        until(lambda: len(self.workers()) == 2, "the workers are started ahead")
+        return self.server
+
+    def workers(self):
+        return workers_of(self.server.process.pid)
+
+    def busy_worker(self):
+        """The one that works: its processor time grows."""
+        def find():
+            before = {pid: cpu_ticks(pid) for pid in self.workers()}
+            time.sleep(0.1)
+            grown = [pid for pid in self.workers() if cpu_ticks(pid) > before.get(pid, 1 << 60) + 2]
+            return grown[0] if len(grown) == 1 else None
+        return until(find, "one worker is busy")
+
+    def running(self, options):
+        job_id = self.server.submit(square(), options)["id"]
+        self.server.reaches(job_id, "running")
+        return job_id
+
+    def faulty(self, seed, **options):
+        return self.server.finished(self.server.submit(square(), {"seed": seed, **options})["id"])
+
+    def assert_works(self):
+        job = self.server.finished(self.server.submit(square())["id"])
+        self.assertEqual(job["state"], "succeeded", job)
+
+    def ends(self, reason):
+        text = self.server.get("/metrics").text()
+        return int(re.search(rf'symcell_worker_ends_total{{reason="{reason}"}} (\d+)', text)[1])
+
+    @without_sanitizer
+    def test_a_crash_is_the_job_s_error_and_nobody_else_s(self):
+        server = self.start()
+        for seed, word in ((CRASH, "SIGSEGV"), (ABORT, "SIGABRT"), (EXIT, "status 3")):
+            job = self.faulty(seed)
+            self.assertEqual(job["state"], "failed")
+            self.assertEqual(job["error"]["code"], "worker_crashed", job)
+            self.assertIn(word, job["error"]["detail"])
+        self.assert_works()
+        self.assertEqual(self.ends("crash"), 3)
+        self.assertEqual(server.get("/readyz").status, 200)
+        until(lambda: len(self.workers()) == 2, "the crashed workers are replaced")
+        self.assertIn("worker_ended", [event["event"] for event in server.log_events()])
+        inspected = server.post_json("/v1/inspect", {"model": square(), "options": {"seed": CRASH}})
+        self.assertEqual(inspected.status, 500)
+        self.assertEqual(inspected.json()["code"], "worker_crashed")
+        self.assertEqual(server.post_json("/v1/inspect", {"model": square()}).status, 200)
+
+    def test_a_worker_killed_from_outside_is_tried_again_but_not_for_ever(self):
+        self.start()
+        job_id = self.running(long_options())
+        killed = set()
+        for _ in range(3):
+            self.assertEqual(self.server.job(job_id)["state"], "running")
+            victim = self.busy_worker()
+            self.assertNotIn(victim, killed)
+            killed.add(victim)
+            os.kill(victim, signal.SIGKILL)
+        job = self.server.finished(job_id)
+        self.assertEqual(job["error"]["code"], "worker_crashed", job)
+        self.assertIn("SIGKILL", job["error"]["detail"])
+        self.assert_works()
+        self.assertEqual(self.ends("outside"), 3)
+
+    @without_sanitizer
+    def test_the_memory_limit_is_told(self):
+        self.start(worker_memory=200 << 20)
+        job = self.faulty(MEMORY)
+        self.assertEqual(job["error"]["code"], "memory_limit", job)
+        self.assertIn("200 MiB", job["error"]["detail"])
+        # Not the hook alone: a mesh that needs more than there is.
+        job = self.server.finished(self.server.submit(square(), long_options())["id"])
+        self.assertEqual(job["error"]["code"], "memory_limit", job)
+        self.assert_works()
+        self.assertEqual(self.ends("memory_limit"), 2)
+
+    def test_a_loop_that_hears_nothing_ends_at_its_time_limit(self):
+        self.start()
+        began = time.monotonic()
+        job = self.faulty(HANG, time_limit=0.5)
+        self.assertEqual(job["error"]["code"], "time_limit", job)
+        self.assertIn("0.5 s", job["error"]["detail"])
+        self.assertLess(time.monotonic() - began, 4)
+        self.assert_works()
+        self.assertEqual(self.ends("time_limit"), 1)
+
+    @without_sanitizer
+    def test_the_processor_limit_is_the_kernel_s(self):
+        self.start(cpu_limit=1)
+        job = self.faulty(HANG)
+        self.assertEqual(job["error"]["code"], "time_limit", job)
+        self.assertIn("processor time", job["error"]["detail"])
+        self.assert_works()
+
+    def test_a_loop_that_hears_nothing_is_cancelled_within_a_second(self):
+        self.start()
+        job_id = self.running({"seed": HANG})
+        worker = self.busy_worker()
+        began = time.monotonic()
+        self.assertIn(self.server.request("POST", f"/v1/jobs/{job_id}/cancel").status, (200, 202))
+        self.server.reaches(job_id, "cancelled")
+        self.assertLess(time.monotonic() - began, 1.5)  # a second, and half of one for a loaded machine
+        self.assertNotIn(worker, self.workers())
+        self.assert_works()
+
+    def test_an_orderly_cancel_costs_no_worker(self):
+        self.start()
+        before = self.workers()
+        job_id = self.running(long_options())
+        self.server.request("POST", f"/v1/jobs/{job_id}/cancel")
+        self.server.reaches(job_id, "cancelled")
+        self.assert_works()
+        self.assertEqual(self.workers(), before)
+        self.assertEqual(self.ends("cancelled"), 0)
+
+    def test_no_worker_outlives_a_killed_server(self):
+        self.start()
+        self.running({"seed": HANG})
+        busy = self.busy_worker()
+        workers = self.workers()
+        self.assertIn(busy, workers)
+        self.server.kill()
+        until(lambda: not set(workers) & set(processes()), "all workers are gone", 5)
+
+    def test_no_worker_outlives_a_stopped_server(self):
+        self.start()
+        self.running({"seed": HANG})
+        workers = self.workers()
+        self.assertEqual(self.server.stop(), 0)
+        self.assertFalse(set(workers) & set(processes()))
+
+    def test_a_stopped_server_runs_the_job_of_a_stuck_worker_again(self):
+        self.start()
+        job_id = self.running({"seed": HANG})
+        self.assertEqual(self.server.stop(), 0)
+        self.server.start()  # without the faults
+        self.assertEqual(self.server.finished(job_id)["state"], "succeeded")
+
+    def test_workers_are_replaced_after_their_share_of_jobs(self):
+        self.start(worker_jobs=3)
+        before = set(self.workers())
+        for _ in range(8):
+            self.assert_works()
+        until(lambda: len(self.workers()) == 2, "there are as many as before")
+        self.assertNotEqual(before, set(self.workers()))
+        self.assertGreaterEqual(self.ends("retired"), 2)
+
+    def test_workers_hold_nothing_of_the_server_s(self):
+        self.start()
+        self.running(long_options())
+        for pid in self.workers():
+            targets = {name: os.readlink(f"/proc/{pid}/fd/{name}") for name in os.listdir(f"/proc/{pid}/fd")}
+            self.assertEqual(len([t for t in targets.values() if t.startswith("socket:")]), 1, targets)
+            self.assertFalse([t for t in targets.values() if "sqlite" in t or t.endswith("/lock")], targets)
+            limits = pathlib.Path(f"/proc/{pid}/limits").read_text()
+            self.assertRegex(limits, r"Max core file size\s+1\s+1\s")
+            status = pathlib.Path(f"/proc/{pid}/status").read_text()
+            self.assertRegex(status, r"SigBlk:\s+0+\n")
+
+    def test_closed_standard_streams_do_no_harm(self):
+        server = Server(workers=1)
+        self.addCleanup(server.remove)
+        port_file = server.data_dir / "port"
+        server.process = subprocess.Popen(
+            ["sh", "-c", 'exec "$@" <&- >&- 2>&-', "sh", binary(), "serve", "--port", "0", "--port-file",
+             str(port_file), "--data-dir", str(server.data_dir / "state")])
+        server.log = open(server.data_dir / "log", "ab")
+        until(port_file.exists, "the server listens")
+        server.port = int(port_file.read_text())
+        job = server.finished(server.submit(square())["id"])
+        self.assertEqual(job["state"], "succeeded", job)
+
+    def test_progress_comes_from_the_worker(self):
+        self.start()
+        job_id = self.running(long_options())
+        until(lambda: self.server.job(job_id)["progress"].get("elements", 0) > 1000, "elements are told")
+        self.assertEqual(self.server.job(job_id)["progress"]["phase"], "refine")
+
+
+if __name__ == "__main__":
+    unittest.main()

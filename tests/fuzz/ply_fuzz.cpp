@@ -1,0 +1,8 @@
+#include "api/formats/ply.hpp"
+#include "tests/fuzz/surface_fuzz.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace symcell;
+  fuzz::check_surface(read_ply(fuzz::text_of(data, size)), size);
+  return 0;
+}

@@ -1,0 +1,92 @@
+// What the tests of edits of solid meshes share: checks that nothing broke, and that nothing
+// changed.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "core/delaunay/solid_editor.hpp"
+#include "core/refine/solid_criteria.hpp"
+#include "core/tds/validate_tetrahedra.hpp"
+#include "tests/support/solid_samples.hpp"
+
+namespace symcell::test {
+
+inline double quotient_volume(const QuotientTetrahedralization& mesh) {
+  double sum = 0;
+  for (TetId t = 0; t < mesh.tet_slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    sum += six_volumes(mesh.corner_point(t, 0), mesh.corner_point(t, 1), mesh.corner_point(t, 2),
+                       mesh.corner_point(t, 3)) /
+           6;
+  }
+  return sum;
+}
+
+// A mesh with the volume it had before.
+[[nodiscard]] inline bool is_valid(const QuotientTetrahedralization& mesh, double volume) {
+  const auto report = validate_tetrahedra(mesh, ValidationLevel::kEmbedding, volume);
+  EXPECT_TRUE(report) << report.error().message;
+  if (!report) return false;
+  EXPECT_NEAR(report->volume, volume, 1e-9 * volume);
+  return std::abs(report->volume - volume) <= 1e-9 * volume;
+}
+
+// Equal for meshes that are the same slot by slot; free slots count for nothing.
+inline std::vector<double> fingerprint(const QuotientTetrahedralization& mesh) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < mesh.vertex_slots(); ++i) {
+    const auto v = static_cast<VertexId>(i);
+    if (mesh.kind(v) == SolidVertexKind::kDeleted) continue;
+    const Point3 p = mesh.point(v);
+    all.insert(all.end(), {static_cast<double>(i), p.x, p.y, p.z, static_cast<double>(mesh.kind(v)),
+                           static_cast<double>(mesh.parent(v))});
+  }
+  for (TetId t = 0; t < mesh.tet_slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    const Tet& x = mesh.tet(t);
+    all.push_back(t);
+    all.push_back(x.region);
+    for (std::size_t i = 0; i < 4; ++i) {
+      all.insert(all.end(), {static_cast<double>(x.v[i]), static_cast<double>(x.k[i]),
+                             static_cast<double>(x.nb[i]), static_cast<double>(x.facet[i])});
+      if (x.nb[i] != kNoHalfFace) all.push_back(x.off[i]);
+    }
+  }
+  all.push_back(static_cast<double>(mesh.edges().size()));
+  return all;
+}
+
+// Tetrahedra over a bound; `ratio_too`: the ratio counts, where nothing excuses it.
+inline std::size_t count_bad(const SolidEditor& editor,
+                             const SolidCriteria& criteria,
+                             bool ratio_too = true) {
+  const QuotientTetrahedralization& mesh = editor.mesh();
+  std::size_t bad = 0;
+  for (TetId t = 0; t < mesh.tet_slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    const bool exempt =
+        !ratio_too || criteria.exemption(mesh, mesh.tet(t)) != SolidExemption::kNone;
+    // Measured anew: what the editor keeps must agree.
+    const TetMeasures m = editor.measure(t);
+    EXPECT_EQ(m.volume, editor.measures(t).volume);
+    bad += criteria.is_bad(m, mesh.tet(t).region, exempt) ? 1 : 0;
+  }
+  return bad;
+}
+
+// A prism of about as many sides whatever the fold.
+inline PrismShape prism_shape(std::int32_t fold, double bore = 0) {
+  PrismShape s;
+  s.fold = fold;
+  s.steps = fold >= 4 ? 1 : (fold == 1 ? 6 : 6 / fold);
+  s.rings = 2;
+  s.layers = 2;
+  s.inner_radius = bore;
+  return s;
+}
+
+}  // namespace symcell::test
