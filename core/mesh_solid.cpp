@@ -26,8 +26,8 @@ constexpr std::int32_t kMaxSectors = 40;
 constexpr double kGoalDeg = 30;
 // Rounds of improvement at least, and the depths of refinement after each.
 constexpr std::size_t kRounds = 2;
-constexpr int kDelaunayRounds = 10;
-constexpr int kDepths[] = {2, 2, 3, 4, 8};
+constexpr int kDelaunayRounds = 4;
+constexpr int kDepths[] = {2, 2, 3, 4, 5};
 
 using Clock = std::chrono::steady_clock;
 

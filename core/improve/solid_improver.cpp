@@ -9,7 +9,7 @@ namespace {
 constexpr std::uint64_t kCheckEvery = 256;
 // Bound on the steps of one round, a tetrahedron: two operations cannot undo each other (each
 // betters the worst), but a round need not go on for what little is left.
-constexpr std::uint64_t kMaxStepsATet = 8;
+constexpr std::uint64_t kMaxStepsATet = 4;
 // Neighbours that merging is tried with, the nearest ones: all of them (14 as a rule) take 20 %
 // more time for 0.4 % fewer tetrahedra.
 constexpr std::size_t kMergeTargets = 6;

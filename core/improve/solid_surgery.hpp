@@ -17,9 +17,9 @@
 namespace symcell {
 
 // An operation must better the worst shape by this share, lest two undo each other for ever.
-inline constexpr double kGain = 1e-4;
+inline constexpr double kGain = 1e-3;
 // Where a bound is broken, the excess must shrink by this share.
-inline constexpr double kExcessGain = 1e-6;
+inline constexpr double kExcessGain = 0.02;
 
 class SolidSurgery {
  public:

@@ -22,6 +22,11 @@ constexpr std::uint64_t kCheckEvery = 256;
 // A subfacet or subsegment is encroached on by points within this share of its diametral sphere's
 // radius. Less than 1 makes smaller meshes; the improvement removes flat tetrahedra that result.
 constexpr double kEncroachment2 = 0.95 * 0.95;
+// Points for the sake of shape that a run may add: some in any case, some a bad tetrahedron of its
+// start, some a point that size asked for.
+constexpr std::uint64_t kLeastShapeBudget = 300;
+constexpr std::uint64_t kShapeBudgetABadTet = 12;
+constexpr std::uint64_t kShapeBudgetASizePoint = 3;
 
 }  // namespace
 
@@ -56,6 +61,7 @@ Result<void> SolidRefiner::run() {
   for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
     if (mesh_.alive(t)) enqueue(t);
   }
+  shape_budget_ = kLeastShapeBudget + kShapeBudgetABadTet * queue_.size();
   const double initial = static_cast<double>(queue_.size()) + 1;
   for (std::uint64_t step = 0; !queue_.empty(); ++step) {
     if (step % kCheckEvery == 0) {
@@ -110,6 +116,7 @@ bool SolidRefiner::allowed(const Cavity& cavity, const Cause& cause, double shar
     if (rho > 0) nearest = std::min(nearest, 2 * rho * std::sin(std::numbers::pi / mesh_.fold()));
   }
   if (cause.size) return nearest >= cause.least;
+  if (shape_budget_ == 0) return false;
   if (nearest < share * cause.shortest) return false;
   return nearest >= cause.shortest || cause.depth < max_depth_;
 }
@@ -125,8 +132,17 @@ SolidRefiner::Outcome SolidRefiner::insert(const Cavity& cavity,
   const bool nearer = !cause.size && cavity.nearest2 < cause.shortest * cause.shortest;
   depth_[static_cast<std::size_t>(v)] =
       static_cast<std::uint8_t>(cause.size ? 0 : cause.depth + (nearer ? 1 : 0));
+  account(cause);
   enqueue_added();
   return Outcome::kInserted;
+}
+
+void SolidRefiner::account(const Cause& cause) {
+  if (cause.size) {
+    shape_budget_ += kShapeBudgetASizePoint;
+  } else {
+    --shape_budget_;
+  }
 }
 
 SolidRefiner::Outcome SolidRefiner::treat(TetId t) {

@@ -9,7 +9,10 @@
 // Termination: a point for the sake of shape is refused where it would come nearer to a vertex than
 // a share of the bad tetrahedron's shortest edge, and where a chain of points, each nearer than the
 // edge that caused it, gets longer than a given depth: below that edges cannot shrink any further.
-// Points for the sake of size are bounded by the volume and the edge length asked for.
+// Points for the sake of size are bounded by the volume and the edge length asked for. Beside that,
+// a run has a budget of points for the sake of shape, in proportion to the bad tetrahedra it finds
+// and to the points that size asks for: where acute facets or narrow gaps make every point cause
+// others, it ends long before edges reach their lower bound, and what is bad then is told.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +43,7 @@ struct SolidRefineCounters {
 
 class SolidRefiner {
  public:
-  static constexpr int kMaxChain = 8;
+  static constexpr int kMaxChain = 4;
 
   SolidRefiner(SolidEditor& editor, const SolidCriteria& criteria, ExecutionContext& context);
 
@@ -93,6 +96,8 @@ class SolidRefiner {
                                std::int32_t parent,
                                bool on_axis,
                                const Cause& cause);
+  // Counts the point against the budget or, where size asks for it, towards it.
+  void account(const Cause& cause);
   // The subfacet of the same facet across an edge of `s`; false at a subsegment or the facet's rim.
   [[nodiscard]] bool cross_edge(Subfacet& s, Corner a, Corner b) const;
 
@@ -111,6 +116,7 @@ class SolidRefiner {
   ExecutionContext& context_;
   std::priority_queue<Entry> queue_;
   int max_depth_ = kMaxChain;
+  std::uint64_t shape_budget_ = 0;
   std::vector<std::uint8_t> depth_;  // per vertex
   Cavity cavity_;
   SolidRefineCounters counters_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "core/base/random.hpp"
@@ -30,14 +31,14 @@ constexpr double kLeastNoiseRel = 1e-6;
 // Facets of CAD parts may be so far from flat, of the tolerance, by the axis' own error.
 constexpr double kFlatShareOfTolerance = 0.02;
 // Shares of the tolerance that the improvement of the triangles may use, tried in turn until hardly
-// any thin triangle is left; with the symmetry error they stay below kUsedShare where that leaves
-// them anything.
-constexpr std::array<double, 4> kImproveShares = {0.35, 0.3, 0.25, 0.2};
-constexpr double kLeastImproveShare = 0.1;
-constexpr double kUsedShare = 0.8;
+// any thin triangle is left, and two at least: as a rule the larger one gives the coarser surface.
+constexpr std::array<double, 6> kImproveShares = {0.35, 0.3, 0.25, 0.2, 0.1, 0.05};
+constexpr int kLeastTaken = 2;
 // So many triangles of curved parts may be thin: height below a fifth of the longest side.
 constexpr double kThinShape = 0.2;
 constexpr double kThinShare = 0.002;
+// Of its longest side: no triangle counts as flatter.
+constexpr double kLeastHeight = 1e-4;
 // A sector's volume times n against the input's.
 constexpr double kVolumeRel = 1e-3;
 
@@ -60,19 +61,33 @@ IndexedSurface restored_sector(const QuotientSurface& s) {
   return flat;
 }
 
-double share_of_thin_triangles(const QuotientSurface& s) {
+struct Shape {
+  double thin = 0;  // share of the triangles of curved parts
+  double cost = 0;  // of meshing them: elements as long as a triangle is high, along its length
+
+  [[nodiscard]] bool many_thin() const { return thin > kThinShare; }
+  [[nodiscard]] bool better_than(const Shape& other) const {
+    return many_thin() != other.many_thin() ? other.many_thin() : cost < other.cost;
+  }
+};
+
+Shape shape_of(const QuotientSurface& s) {
   const RotationTable rotations(s.fold);
   std::size_t thin = 0;
+  Shape shape;
   for (std::size_t t = 0; t < s.triangles.size(); ++t) {
     if (s.patch[t] >= 0) continue;
     const Point3 a = corner_point(s, rotations, s.triangles[t][0]);
     const Point3 b = corner_point(s, rotations, s.triangles[t][1]);
     const Point3 c = corner_point(s, rotations, s.triangles[t][2]);
-    const double longest =
+    const double longest2 =
         std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)});
-    thin += length(area_normal(a, b, c)) < kThinShape * longest ? 1 : 0;
+    const double twice_area = length(area_normal(a, b, c));
+    thin += twice_area < kThinShape * longest2 ? 1 : 0;
+    shape.cost += longest2 / std::max(twice_area, kLeastHeight * longest2);
   }
-  return static_cast<double>(thin) / static_cast<double>(s.triangles.size());
+  shape.thin = static_cast<double>(thin) / static_cast<double>(s.triangles.size());
+  return shape;
 }
 
 }  // namespace
@@ -131,26 +146,48 @@ void SurfaceSectorSource::choose_candidates() {
   }
 }
 
+// What each share of the tolerance leads to differs from part to part, and how much of it the
+// symmetry error has used up from place to place: a result that is no longer the input's shape is
+// none.
 Result<void> SurfaceSectorSource::improve(QuotientSurface& surface,
                                           const FlatnessTolerances& flatness,
                                           ExecutionContext& context) const {
   const QuotientSurface given = surface;
-  const double left = kUsedShare * tolerance_ - symmetry_.error_rel * symmetry_.diameter;
-  double least = 2;
-  double before = 0;
+  Error last;
+  std::optional<Shape> best;
+  int taken = 0;
   for (const double share : kImproveShares) {
-    const double most = std::clamp(left, kLeastImproveShare * tolerance_, share * tolerance_);
-    if (most == before) continue;
-    before = most;
     QuotientSurface improved = given;
-    if (auto done = improve_surface(improved, most, flatness, context); !done) return done;
-    const double thin = share_of_thin_triangles(improved);
-    if (thin < least) {
-      least = thin;
-      surface = std::move(improved);
+    if (auto done = improve_surface(improved, share * tolerance_, flatness, context); !done) {
+      return done;
     }
-    if (least <= kThinShare) break;
+    if (auto same = check_shape(improved, context); !same) {
+      if (auto state = context.check(); !state) return state;
+      last = same.error();
+      continue;
+    }
+    const Shape shape = shape_of(improved);
+    if (!best || shape.better_than(*best)) {
+      surface = std::move(improved);
+      best = shape;
+    }
+    if (++taken >= kLeastTaken && !best->many_thin()) break;
   }
+  return best ? Result<void>{} : tl::unexpected<Error>(last);
+}
+
+Result<void> SurfaceSectorSource::check_shape(const QuotientSurface& surface,
+                                              ExecutionContext& context) const {
+  const double volume = full_volume(surface);
+  if (!(std::abs(volume - volume_) <= kVolumeRel * std::abs(volume_))) {
+    return fail(ErrorCode::kInternal, "the sector's volume is wrong: " + describe_rounded(volume) +
+                                          " for " + describe_rounded(volume_));
+  }
+  const IndexedSurface restored = restored_sector(surface);
+  if (auto near = check_distances(restored, context); !near) return near;
+  auto crossing = self_intersections(restored, 1, context);
+  if (!crossing) return tl::unexpected<Error>(crossing.error());
+  if (!crossing->empty()) return fail(ErrorCode::kInternal, "the sector intersects itself");
   return {};
 }
 
@@ -209,18 +246,6 @@ Result<SolidSector> SurfaceSectorSource::sector(std::int32_t index,
   if (auto improved = improve(quotient, flatness, context); !improved) {
     return tl::unexpected<Error>(improved.error());
   }
-  const double volume = full_volume(quotient);
-  if (!(std::abs(volume - volume_) <= kVolumeRel * std::abs(volume_))) {
-    return fail(ErrorCode::kInternal, "the sector's volume is wrong: " + describe_rounded(volume) +
-                                          " for " + describe_rounded(volume_));
-  }
-  const IndexedSurface restored = restored_sector(quotient);
-  if (auto near = check_distances(restored, context); !near) {
-    return tl::unexpected<Error>(near.error());
-  }
-  auto crossing = self_intersections(restored, 1, context);
-  if (!crossing) return tl::unexpected<Error>(crossing.error());
-  if (!crossing->empty()) return fail(ErrorCode::kInternal, "the sector intersects itself");
   return quotient_to_sector(quotient);
 }
 

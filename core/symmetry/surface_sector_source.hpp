@@ -35,6 +35,8 @@ class SurfaceSectorSource final : public SectorSource {
   [[nodiscard]] Result<void> improve(QuotientSurface& surface,
                                      const FlatnessTolerances& flatness,
                                      ExecutionContext& context) const;
+  [[nodiscard]] Result<void> check_shape(const QuotientSurface& surface,
+                                         ExecutionContext& context) const;
   [[nodiscard]] Result<void> check_distances(const IndexedSurface& sector,
                                              ExecutionContext& context) const;
   [[nodiscard]] bool all_near(const IndexedSurface& surface, const TriangleTree& tree) const;
