@@ -8,4 +8,5 @@ target_sources(
           improve/solid_improver.cpp
           improve/solid_moves.cpp
           improve/solid_surgery.cpp
-          mesh_solid.cpp)
+          mesh_solid.cpp
+          refine_solid.cpp)

@@ -106,6 +106,7 @@ void SolidCriteria::find_sharp_segments(const QuotientTetrahedralization& mesh) 
 // In every facet, the angle between two segments at a vertex is a sum over subfacets.
 void SolidCriteria::find_sharp_vertices(const QuotientTetrahedralization& mesh, bool tessellated) {
   sharp_vertices_.assign(mesh.vertex_slots(), 0);
+  acute_vertices_.assign(mesh.vertex_slots(), 0);
   struct Spoke {
     Corner to;
     std::vector<std::pair<std::size_t, double>> next;  // spoke across a subfacet, angle
@@ -114,7 +115,7 @@ void SolidCriteria::find_sharp_vertices(const QuotientTetrahedralization& mesh, 
   std::vector<TetCopy> star;
   for (std::size_t i = 0; i < mesh.vertex_slots(); ++i) {
     const auto v = static_cast<VertexId>(i);
-    if (tessellated || mesh.kind(v) != SolidVertexKind::kInput) continue;
+    if (mesh.kind(v) != SolidVertexKind::kInput) continue;
     star.clear();
     mesh.star(v, star);
     const Corner apex{v, 0};
@@ -167,17 +168,20 @@ void SolidCriteria::find_sharp_vertices(const QuotientTetrahedralization& mesh, 
             sum += go.second;
           }
           if (fan[at].segment && sum < kSharpDeg * kRadians - kAngleSlack) {
-            sharp_vertices_[i] = 1;
+            acute_vertices_[i] = 1;
           }
         }
       }
     }
   }
+  if (!tessellated) sharp_vertices_ = acute_vertices_;
   // The ends of a sharp segment are on it.
   mesh.edges().for_each([&](const EdgeKey& key, std::int32_t segment) {
     if (!sharp_segment(segment)) return;
     sharp_vertices_[static_cast<std::size_t>(key.a)] = 1;
     sharp_vertices_[static_cast<std::size_t>(key.b)] = 1;
+    acute_vertices_[static_cast<std::size_t>(key.a)] = 1;
+    acute_vertices_[static_cast<std::size_t>(key.b)] = 1;
   });
 }
 

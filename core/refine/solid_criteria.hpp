@@ -69,6 +69,12 @@ class SolidCriteria {
   [[nodiscard]] bool sharp_vertex(const QuotientTetrahedralization& mesh, VertexId v) const {
     return exemption(mesh, v) == SolidExemption::kSmallInputAngle;
   }
+  // A vertex of the input where segments of one facet meet at a small angle, or on a sharp segment:
+  // excused or not, segments are divided in shells around it.
+  [[nodiscard]] bool acute_vertex(const QuotientTetrahedralization& mesh, VertexId v) const {
+    return mesh.kind(v) == SolidVertexKind::kInput &&
+           acute_vertices_[static_cast<std::size_t>(v)] != 0;
+  }
 
  private:
   void find_sharp_segments(const QuotientTetrahedralization& mesh);
@@ -80,6 +86,7 @@ class SolidCriteria {
   std::vector<double> max_volumes_;           // per region
   std::vector<std::uint8_t> sharp_segments_;  // per segment
   std::vector<std::uint8_t> sharp_vertices_;  // per vertex of the first mesh
+  std::vector<std::uint8_t> acute_vertices_;  // likewise
 };
 
 }  // namespace symcell

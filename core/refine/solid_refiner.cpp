@@ -340,10 +340,8 @@ SolidRefiner::Outcome SolidRefiner::split_segment(TetCopy at,
                                                   const Cause& cause) {
   const Point3 p = mesh_.lift(a), q = mesh_.lift(b);
   double at_share = 0.5;
-  const bool sharp_a =
-      mesh_.kind(a.v) == SolidVertexKind::kInput && criteria_.sharp_vertex(mesh_, a.v);
-  const bool sharp_b =
-      mesh_.kind(b.v) == SolidVertexKind::kInput && criteria_.sharp_vertex(mesh_, b.v);
+  const bool sharp_a = criteria_.acute_vertex(mesh_, a.v);
+  const bool sharp_b = criteria_.acute_vertex(mesh_, b.v);
   if (sharp_a != sharp_b) {
     // Concentric shells: powers of two from the sharp vertex, so that segments that meet there at a
     // small angle are split at equal distances.

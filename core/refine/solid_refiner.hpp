@@ -43,7 +43,7 @@ struct SolidRefineCounters {
 
 class SolidRefiner {
  public:
-  static constexpr int kMaxChain = 4;
+  static constexpr int kMaxChain = 8;
 
   SolidRefiner(SolidEditor& editor, const SolidCriteria& criteria, ExecutionContext& context);
 

@@ -31,6 +31,8 @@ constexpr double kLeastSplit = 10;
 constexpr double kWorthwhile = 0.005;
 // A flip or a move must raise the worst shape by this factor.
 constexpr double kBetter = 1.02;
+// A Delaunay flip must lower the sum of the angles opposite to the edge by so much.
+constexpr double kDelaunayGain = 0.02;
 // A fit may lower it to this share.
 constexpr double kFitShape = 0.95;
 // Rounding that a vertex may be off the planes of its patches, of the extent.
@@ -41,6 +43,10 @@ double shape_of(const std::array<Point3, 3>& p) {
   const double longest = std::max(
       {squared_distance(p[0], p[1]), squared_distance(p[1], p[2]), squared_distance(p[2], p[0])});
   return longest > 0 ? length(area_normal(p[0], p[1], p[2])) / longest : 0;
+}
+
+double angle_at(Point3 x, Point3 a, Point3 b) {
+  return std::atan2(length(cross(a - x, b - x)), dot(a - x, b - x));
 }
 
 // A triangle that has changed its place shows its own normal, unless it is a sliver.
@@ -89,6 +95,13 @@ class Improver {
       if (static_cast<double>(*cut) <= kWorthwhile * count()) break;
     }
     auto ok = steps({&Improver::fit_pass, &Improver::flip_pass, &Improver::fit_pass});
+    if (!ok) return ok;
+    settling_ = true;
+    for (int pass = 0; pass < kMostPasses; ++pass) {
+      auto flipped = flip_pass();
+      if (!flipped) return tl::unexpected<Error>(flipped.error());
+      if (*flipped == 0) break;
+    }
     guard_.renumber(mesh_.compact());
     return ok;
   }
@@ -272,13 +285,9 @@ class Improver {
     const QuotientSurface& s = mesh_.surface();
     if (s.patch[t] != s.patch[other.triangle]) return false;
     if (planar(t) && s.frame[t] != s.frame[other.triangle]) return false;
-    const double before =
-        std::min(shape_of(mesh_.points(t)), shape_of(mesh_.points(other.triangle)));
     const auto plan = mesh_.plan_flip(t, side);
     if (!plan) return false;
-    const double after =
-        std::min(shape_of(plan->changed[0].points), shape_of(plan->changed[1].points));
-    if (after <= kBetter * before) return false;
+    if (!betters(*plan, mesh_.points(t), mesh_.points(other.triangle))) return false;
     const std::array<std::int32_t, 2> gone{t, other.triangle};
     if (planar(t)) {
       if (!keeps_plane(plan->changed[0]) || !keeps_plane(plan->changed[1])) return false;
@@ -289,6 +298,21 @@ class Improver {
     guard_.commit(gone, plan->changed);
     mesh_.flip(*plan);
     return true;
+  }
+
+  // At first the worse of the two shapes counts; at last, where the surface hardly turns, that the
+  // diagonal be the Delaunay one: else four vertices make a tetrahedron without height.
+  [[nodiscard]] bool betters(const FlipPlan& plan,
+                             const std::array<Point3, 3>& p,
+                             const std::array<Point3, 3>& q) const {
+    const std::array<Point3, 3>&r = plan.changed[0].points, &s = plan.changed[1].points;
+    const double before = std::min(shape_of(p), shape_of(q));
+    const double after = std::min(shape_of(r), shape_of(s));
+    if (!settling_) return after > kBetter * before;
+    // With corners (a, q, p) and (q, b, p): the new diagonal faces a and b.
+    const double old_sum = angle_at(r[2], r[0], s[1]) + angle_at(r[1], r[0], s[1]);
+    const double new_sum = angle_at(r[0], r[1], r[2]) + angle_at(s[1], s[0], s[2]);
+    return old_sum > new_sum + kDelaunayGain && after > kFitShape * std::min(before, kGoodShape);
   }
 
   Result<std::size_t> move_pass() {
@@ -399,6 +423,7 @@ class Improver {
   std::vector<bool> touched_;
   std::vector<double> heights_;  // per triangle: of the old surface over it
   bool shaping_ = false;         // now only better shapes count, not fewer triangles
+  bool settling_ = false;        // now only Delaunay flips
   double extent_ = 0;
 };
 

@@ -77,6 +77,11 @@ struct SolidSector {
   std::vector<SectorRegion> regions;
   bool ignore_markers = false;  // regions may differ between copies
 
+  // Surfaces, whose triangles differ from cut to cut: corners of facets too narrow for the default
+  // radius-edge bound, and an estimate of the elements that the triangles take.
+  std::int64_t narrow_corners = 0;
+  double meshing_cost = 0;
+
   // Volume of the whole model's enclosed space by its boundary alone, 0 if unknown. A check.
   double expected_volume = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -37,6 +38,16 @@ constexpr int kLeastTaken = 2;
 // So many triangles of curved parts may be thin: height below a fifth of the longest side.
 constexpr double kThinShape = 0.2;
 constexpr double kThinShare = 0.002;
+// In a corner below asin(1 / 2B) every subfacet has a circumradius above B times its shortest side,
+// and so has the tetrahedron on it; B is the default bound.
+constexpr double kNarrowCorner = 20.71 * std::numbers::pi / 180;
+constexpr double kNarrowCost = 100;
+// Boundary squared over area of a square, a triangle each: strips cost as much as they are long for
+// their width.
+constexpr double kSquareRound = 8;
+// So many triangles are improved for the sake of a better cut, by at most so many candidates.
+constexpr std::size_t kCompareBudget = 150'000;
+constexpr std::int32_t kMostCompared = 8;
 // Of its longest side: no triangle counts as flatter.
 constexpr double kLeastHeight = 1e-4;
 // A sector's volume times n against the input's.
@@ -61,36 +72,78 @@ IndexedSurface restored_sector(const QuotientSurface& s) {
   return flat;
 }
 
-struct Shape {
-  double thin = 0;  // share of the triangles of curved parts
-  double cost = 0;  // of meshing them: elements as long as a triangle is high, along its length
-
-  [[nodiscard]] bool many_thin() const { return thin > kThinShare; }
-  [[nodiscard]] bool better_than(const Shape& other) const {
-    return many_thin() != other.many_thin() ? other.many_thin() : cost < other.cost;
-  }
+struct PatchFigures {
+  double area = 0;
+  double boundary = 0;
 };
 
-Shape shape_of(const QuotientSurface& s) {
+std::map<std::int32_t, PatchFigures> patch_figures(const QuotientSurface& s,
+                                                   const RotationTable& rotations) {
+  std::map<std::int32_t, PatchFigures> patches;
+  for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+    if (s.patch[t] < 0) continue;
+    const QuotientTriangle& c = s.triangles[t];
+    patches[s.patch[t]].area += length(area_normal(corner_point(s, rotations, c[0]),
+                                                   corner_point(s, rotations, c[1]),
+                                                   corner_point(s, rotations, c[2]))) /
+                                2;
+  }
+  const std::vector<QuotientEdgeUse> uses = sorted_edge_uses(s);
+  for (std::size_t i = 0; i + 1 < uses.size(); i += 2) {
+    const std::int32_t p = s.patch[uses[i].triangle], q = s.patch[uses[i + 1].triangle];
+    if (p == q) continue;
+    const QuotientTriangle& c = s.triangles[uses[i].triangle];
+    const double side = distance(corner_point(s, rotations, c[uses[i].side]),
+                                 corner_point(s, rotations, c[(uses[i].side + 1) % 3]));
+    if (p >= 0) patches[p].boundary += side;
+    if (q >= 0) patches[q].boundary += side;
+  }
+  return patches;
+}
+
+SectorShape shape_of(const QuotientSurface& s) {
   const RotationTable rotations(s.fold);
   std::size_t thin = 0;
-  Shape shape;
+  SectorShape shape;
+  std::map<std::pair<std::int32_t, std::int32_t>, double> corners;  // of planar patches
   for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+    std::array<Point3, 3> p;
+    for (std::size_t i = 0; i < 3; ++i) p[i] = corner_point(s, rotations, s.triangles[t][i]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Point3 u = p[(i + 1) % 3] - p[i], v = p[(i + 2) % 3] - p[i];
+      const double angle = std::atan2(length(cross(u, v)), dot(u, v));
+      if (s.patch[t] >= 0) {
+        corners[{s.patch[t], s.triangles[t][i].orbit}] += angle;
+      } else {
+        shape.narrow += angle < kNarrowCorner ? 1 : 0;
+      }
+    }
     if (s.patch[t] >= 0) continue;
-    const Point3 a = corner_point(s, rotations, s.triangles[t][0]);
-    const Point3 b = corner_point(s, rotations, s.triangles[t][1]);
-    const Point3 c = corner_point(s, rotations, s.triangles[t][2]);
+    const auto& [a, b, c] = p;
     const double longest2 =
         std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)});
     const double twice_area = length(area_normal(a, b, c));
     thin += twice_area < kThinShape * longest2 ? 1 : 0;
     shape.cost += longest2 / std::max(twice_area, kLeastHeight * longest2);
   }
+  for (const auto& [patch, figures] : patch_figures(s, rotations)) {
+    shape.cost += figures.boundary * figures.boundary / (kSquareRound * figures.area);
+  }
+  for (const auto& [corner, angle] : corners) shape.narrow += angle < kNarrowCorner ? 1 : 0;
+  shape.cost += kNarrowCost * static_cast<double>(shape.narrow);
   shape.thin = static_cast<double>(thin) / static_cast<double>(s.triangles.size());
   return shape;
 }
 
 }  // namespace
+
+bool SectorShape::many_thin() const {
+  return thin > kThinShare;
+}
+
+bool SectorShape::better_than(const SectorShape& other) const {
+  return many_thin() != other.many_thin() ? other.many_thin() : cost < other.cost;
+}
 
 SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean,
                                          SolidSymmetry symmetry,
@@ -149,31 +202,37 @@ void SurfaceSectorSource::choose_candidates() {
 // What each share of the tolerance leads to differs from part to part, and how much of it the
 // symmetry error has used up from place to place: a result that is no longer the input's shape is
 // none.
-Result<void> SurfaceSectorSource::improve(QuotientSurface& surface,
-                                          const FlatnessTolerances& flatness,
-                                          ExecutionContext& context) const {
+Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
+                                                 const FlatnessTolerances& flatness,
+                                                 ExecutionContext& context) const {
   const QuotientSurface given = surface;
   Error last;
-  std::optional<Shape> best;
+  std::optional<SectorShape> best;
   int taken = 0;
   for (const double share : kImproveShares) {
     QuotientSurface improved = given;
     if (auto done = improve_surface(improved, share * tolerance_, flatness, context); !done) {
-      return done;
+      return tl::unexpected<Error>(done.error());
     }
     if (auto same = check_shape(improved, context); !same) {
-      if (auto state = context.check(); !state) return state;
+      if (auto state = context.check(); !state) return tl::unexpected<Error>(state.error());
       last = same.error();
       continue;
     }
-    const Shape shape = shape_of(improved);
+    const SectorShape shape = shape_of(improved);
     if (!best || shape.better_than(*best)) {
       surface = std::move(improved);
       best = shape;
     }
     if (++taken >= kLeastTaken && !best->many_thin()) break;
   }
-  return best ? Result<void>{} : tl::unexpected<Error>(last);
+  if (!best) return tl::unexpected<Error>(last);
+  return *best;
+}
+
+std::int32_t SurfaceSectorSource::worth_comparing() const {
+  const std::size_t triangles = full_.triangles.size() / static_cast<std::size_t>(symmetry_.fold);
+  return std::clamp(static_cast<std::int32_t>(kCompareBudget / (triangles + 1)), 1, kMostCompared);
 }
 
 Result<void> SurfaceSectorSource::check_shape(const QuotientSurface& surface,
@@ -243,10 +302,14 @@ Result<SolidSector> SurfaceSectorSource::sector(std::int32_t index,
   if (auto flat = flatten_planar_patches(quotient, flatness, context); !flat) {
     return tl::unexpected<Error>(flat.error());
   }
-  if (auto improved = improve(quotient, flatness, context); !improved) {
-    return tl::unexpected<Error>(improved.error());
+  const auto shape = improve(quotient, flatness, context);
+  if (!shape) return tl::unexpected<Error>(shape.error());
+  auto sector = quotient_to_sector(quotient);
+  if (sector) {
+    sector->narrow_corners = shape->narrow;
+    sector->meshing_cost = shape->cost;
   }
-  return quotient_to_sector(quotient);
+  return sector;
 }
 
 }  // namespace symcell

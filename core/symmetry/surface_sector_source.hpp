@@ -13,6 +13,18 @@
 
 namespace symcell {
 
+// How well a sector's triangles can be meshed.
+struct SectorShape {
+  std::int64_t narrow = 0;  // corners of facets that no good tetrahedron fits into
+  double thin = 0;          // share of thin triangles of curved parts
+  // Elements that the surface takes: as long as a triangle or strip is high, along its length; and
+  // what refinement adds at narrow corners in vain.
+  double cost = 0;
+
+  [[nodiscard]] bool many_thin() const;
+  [[nodiscard]] bool better_than(const SectorShape& other) const;
+};
+
 class SurfaceSectorSource final : public SectorSource {
  public:
   // `clean`: without problem, input coordinates.  `tolerance`: input units.
@@ -23,6 +35,7 @@ class SurfaceSectorSource final : public SectorSource {
   [[nodiscard]] std::int32_t candidates() const override {
     return static_cast<std::int32_t>(candidates_.size());
   }
+  [[nodiscard]] std::int32_t worth_comparing() const override;
   [[nodiscard]] Result<SolidSector> sector(std::int32_t index,
                                            ExecutionContext& context) const override;
 
@@ -32,9 +45,9 @@ class SurfaceSectorSource final : public SectorSource {
     double snap;  // length
   };
   void choose_candidates();
-  [[nodiscard]] Result<void> improve(QuotientSurface& surface,
-                                     const FlatnessTolerances& flatness,
-                                     ExecutionContext& context) const;
+  [[nodiscard]] Result<SectorShape> improve(QuotientSurface& surface,
+                                            const FlatnessTolerances& flatness,
+                                            ExecutionContext& context) const;
   [[nodiscard]] Result<void> check_shape(const QuotientSurface& surface,
                                          ExecutionContext& context) const;
   [[nodiscard]] Result<void> check_distances(const IndexedSurface& sector,

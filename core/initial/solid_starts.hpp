@@ -1,0 +1,37 @@
+// Initial tetrahedralizations of a solid, of one sector after the other.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/execution_context.hpp"
+#include "core/initial/initial_tetrahedralization.hpp"
+#include "core/symmetry/sector_source.hpp"
+
+namespace symcell {
+
+class SolidStarts {
+ public:
+  // `source` must outlive the object.
+  explicit SolidStarts(const SectorSource& source);
+
+  // Whether sectors are left that were not tried.
+  [[nodiscard]] bool has_next() const { return !sectors_.empty() || next_ < most_; }
+
+  // Of the next sector that can be tetrahedralized; at first of those worth comparing the one that
+  // promises the smallest mesh.
+  // Errors: kTetrahedralizationFailed (of all that were left), model codes, limits.
+  [[nodiscard]] Result<InitialTetrahedralization> next(ExecutionContext& context);
+
+ private:
+  [[nodiscard]] Result<void> cut_one_more(ExecutionContext& context);
+
+  const SectorSource& source_;
+  std::int32_t most_;
+  std::int32_t next_ = 0;             // candidate of the source
+  std::vector<SolidSector> sectors_;  // cut already; the most promising is the last
+  Error last_;
+};
+
+}  // namespace symcell

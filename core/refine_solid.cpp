@@ -1,0 +1,202 @@
+#include "core/refine_solid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "core/delaunay/solid_legalise.hpp"
+#include "core/improve/solid_improver.hpp"
+#include "core/refine/solid_refiner.hpp"
+#include "core/tds/validate_tetrahedra.hpp"
+
+namespace symcell {
+namespace {
+
+// The improvement works on tetrahedra with a dihedral angle below this or above its supplement.
+constexpr double kGoalDeg = 30;
+// Rounds of improvement at least, and the depths of refinement after each.
+constexpr std::size_t kRounds = 2;
+constexpr int kDepths[] = {2, 2, 3, 4, 5};
+// Depth of refinement where no improvement follows, and rounds of flips and refinement.
+constexpr int kDepthAlone = 4;
+constexpr int kDelaunayRounds = 4;
+
+double total_volume(const SolidEditor& editor) {
+  double sum = 0;
+  for (TetId t = 0; t < editor.mesh().tet_slots(); ++t) {
+    if (editor.mesh().alive(t)) sum += editor.measures(t).volume;
+  }
+  return sum;
+}
+
+bool has_bad_tet(const SolidEditor& editor, const SolidCriteria& criteria) {
+  const QuotientTetrahedralization& mesh = editor.mesh();
+  for (TetId t = 0; t < mesh.tet_slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    const bool exempt = criteria.exemption(mesh, mesh.tet(t)) != SolidExemption::kNone;
+    if (criteria.is_bad(editor.measures(t), mesh.tet(t).region, exempt)) return true;
+  }
+  return false;
+}
+
+// A bound on the volume asks for at least volume / bound tetrahedra: refuse at once what cannot
+// fit.
+Result<double> check_volume_budget(const SolidEditor& editor,
+                                   const SolidCriteria& criteria,
+                                   const ExecutionContext& context) {
+  double least = 0;
+  for (TetId t = 0; t < editor.mesh().tet_slots(); ++t) {
+    if (!editor.mesh().alive(t)) continue;
+    least += editor.measures(t).volume / criteria.max_volume(editor.mesh().tet(t).region);
+  }
+  if (least <= static_cast<double>(context.max_elements())) return least;
+  return fail(ErrorCode::kElementLimit,
+              "the volume bounds ask for at least " + std::to_string(least) +
+                  " tetrahedra in the cell, max_elements is " +
+                  std::to_string(context.max_elements()) +
+                  "; raise max_volume (or the regions' max_volume) or max_elements");
+}
+
+Result<void> refine(SolidEditor& editor,
+                    const SolidCriteria& criteria,
+                    int depth,
+                    ExecutionContext& context,
+                    SolidRefineCounters& total) {
+  SolidRefiner refiner(editor, criteria, context);
+  refiner.set_max_depth(depth);
+  auto done = refiner.run();
+  total += refiner.counters();
+  return done;
+}
+
+// Rounds of improvement, each followed by refinement of what it left over the bounds: of more depth
+// only where the improvement could not mend it.
+Result<void> improve(SolidEditor& editor,
+                     const SolidCriteria& criteria,
+                     double goal_deg,
+                     ExecutionContext& context,
+                     SolidRefineCounters& total) {
+  const double goal = std::sin(goal_deg * std::numbers::pi / 180);
+  for (std::size_t round = 0; round < std::size(kDepths); ++round) {
+    context.report(Phase::kImprove, 0.6 + 0.05 * static_cast<double>(round),
+                   editor.mesh().tet_count());
+    editor.compact();
+    SolidSurgery surgery(editor, criteria);
+    SolidImprover improver(surgery, criteria, context);
+    if (auto ok = improver.round(goal); !ok) return ok;
+    if (round + 1 >= kRounds && !has_bad_tet(editor, criteria)) break;
+    if (auto ok = refine(editor, criteria, kDepths[round], context, total); !ok) return ok;
+  }
+  SolidSurgery surgery(editor, criteria);
+  return SolidImprover(surgery, criteria, context).mend(goal);
+}
+
+// Counts the exempt by reason and finds the worst shape. A broken size bound must not be handed out.
+Result<void> count_exempt(const SolidEditor& editor,
+                          const SolidCriteria& criteria,
+                          RefinedSolid& result) {
+  std::uint64_t sharp = 0, axis = 0;
+  const QuotientTetrahedralization& mesh = editor.mesh();
+  for (TetId t = 0; t < mesh.tet_slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    const TetMeasures& m = editor.measures(t);
+    result.least_sine = std::min(
+        result.least_sine, min_dihedral_sine(mesh.corner_point(t, 0), mesh.corner_point(t, 1),
+                                             mesh.corner_point(t, 2), mesh.corner_point(t, 3)));
+    if (criteria.size_excess2(m, mesh.tet(t).region) > 1) {
+      const Point3 x = mesh.corner_point(t, 0);
+      return fail(ErrorCode::kBoundUnreachable,
+                  "a volume or edge bound cannot be reached: a tetrahedron of volume " +
+                      std::to_string(m.volume) + " near (" + std::to_string(x.x) + ", " +
+                      std::to_string(x.y) + ", " + std::to_string(x.z) +
+                      ") of the axis' frame stays too large; raise max_volume or max_edge");
+    }
+    if (!criteria.is_bad(m, mesh.tet(t).region, false)) continue;
+    switch (criteria.exemption(mesh, mesh.tet(t))) {
+      case SolidExemption::kSmallInputAngle: ++sharp; break;
+      case SolidExemption::kAxis: ++axis; break;
+      case SolidExemption::kNone: ++result.guarded; break;
+    }
+  }
+  if (sharp > 0) result.exempt.push_back({"small_input_angle", sharp});
+  if (axis > 0) result.exempt.push_back({"fold_angle_at_axis", axis});
+  if (result.guarded > 0) result.exempt.push_back({"near_small_feature", result.guarded});
+  return {};
+}
+
+// Everything but the improvement, for meshes that are to be Delaunay.
+Result<void> refine_alone(SolidEditor& editor,
+                          const SolidCriteria& criteria,
+                          const MeshOptions& options,
+                          ExecutionContext& context,
+                          SolidRefineCounters& total) {
+  if (auto ok = refine(editor, criteria, kDepthAlone, context, total); !ok) return ok;
+  // What flips make bad is refined again.
+  for (int round = 0; options.delaunay && round < kDelaunayRounds; ++round) {
+    const auto flips = legalise(editor, context);
+    if (!flips) return tl::unexpected<Error>(flips.error());
+    if (*flips == 0) break;
+    if (auto ok = refine(editor, criteria, kDepthAlone, context, total); !ok) return ok;
+  }
+  return {};
+}
+
+Statistics::Refinement count_work(const SolidEditor& editor, const SolidRefineCounters& refined) {
+  Statistics::Refinement work;
+  const QuotientTetrahedralization& mesh = editor.mesh();
+  for (std::size_t v = 0; v < mesh.vertex_slots(); ++v) {
+    const SolidVertexKind kind = mesh.kind(static_cast<VertexId>(v));
+    const bool steiner = kind != SolidVertexKind::kInput && kind != SolidVertexKind::kDeleted;
+    work.steiner_points += steiner ? 1 : 0;
+  }
+  work.splits = refined.segment_splits;
+  work.flips = editor.counters().flips;
+  work.crossings = editor.counters().crossings;
+  work.relocations = editor.counters().moves;
+  work.removed = editor.counters().collapses;
+  return work;
+}
+
+}  // namespace
+
+Result<RefinedSolid> refine_solid(InitialTetrahedralization solid,
+                                  const MeshOptions& options,
+                                  ExecutionContext& context) {
+  RefinedSolid result;
+  result.solid = std::move(solid);
+  QuotientTetrahedralization& mesh = result.solid.mesh;
+  SolidEditor editor(mesh);
+  const double volume = total_volume(editor);
+  const SolidCriteria criteria(result.solid, options);
+  const auto least = check_volume_budget(editor, criteria, context);
+  if (!least) return tl::unexpected<Error>(least.error());
+  result.least_count = *least;
+  {
+    SolidSurgery surgery(editor, criteria);
+    static_cast<void>(SolidImprover(surgery, criteria, context).collapse_cut_vertices());
+  }
+  SolidRefineCounters refined;
+  if (options.delaunay || options.plain) {
+    auto ok = refine_alone(editor, criteria, options, context, refined);
+    if (!ok) return tl::unexpected<Error>(ok.error());
+  } else {
+    auto ok = refine(editor, criteria, kDepths[0], context, refined);
+    const double goal_deg = std::max(kGoalDeg, options.min_dihedral_deg);
+    if (ok) ok = improve(editor, criteria, goal_deg, context, refined);
+    if (!ok) return tl::unexpected<Error>(ok.error());
+  }
+  result.refinement = count_work(editor, refined);
+  const auto report = validate_tetrahedra(mesh, ValidationLevel::kEmbedding, volume);
+  if (!report) return tl::unexpected<Error>(report.error());
+  result.delaunay = count_illegal(editor) == 0;
+  if (auto ok = count_exempt(editor, criteria, result); !ok) {
+    return tl::unexpected<Error>(ok.error());
+  }
+  mesh.compact();
+  return result;
+}
+
+}  // namespace symcell

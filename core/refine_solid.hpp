@@ -1,0 +1,37 @@
+// From an initial tetrahedralization to a quality mesh in the quotient: refinement and improvement
+// in turn. Source: [paper] sec. 5.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/execution_context.hpp"
+#include "core/initial/initial_tetrahedralization.hpp"
+#include "core/model/mesh_options.hpp"
+#include "core/stats/statistics.hpp"
+
+namespace symcell {
+
+struct RefinedSolid {
+  InitialTetrahedralization solid;
+  Statistics::Refinement refinement;
+  std::vector<ExemptCount> exempt;
+  bool delaunay = true;
+  // Tetrahedra over the radius-edge bound that nothing of the input excuses.
+  std::uint64_t guarded = 0;
+  // Of all dihedral angles.
+  double least_sine = 1;
+  // Tetrahedra that the volume bounds ask for by themselves.
+  double least_count = 0;
+
+  [[nodiscard]] std::uint64_t count() const { return solid.mesh.tet_count(); }
+};
+
+// Errors: kElementLimit, kTimeLimit, kCancelled, kBoundUnreachable, kInternal (the mesh is not
+// valid).
+[[nodiscard]] Result<RefinedSolid> refine_solid(InitialTetrahedralization solid,
+                                                const MeshOptions& options,
+                                                ExecutionContext& context);
+
+}  // namespace symcell
