@@ -1,6 +1,7 @@
 #include "core/mesh_solid.hpp"
 
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -17,13 +18,20 @@ namespace {
 // triangles and to the first tetrahedralization shows in meshes that no size bound determines, up
 // to twice as many tetrahedra.
 constexpr int kMostStarts = 4;
+constexpr int kMostStartsIfBad = 8;
 // Larger cells are meshed once, but for bad tetrahedra, and up to the second of these.
 constexpr std::uint64_t kSmallCell = 8'000;
 constexpr std::uint64_t kMendableCell = 60'000;
+// Before its improvement a mesh of a further start may be larger than the best one by this factor.
+constexpr std::uint64_t kMostTimesLarger = 2;
+// Triangles that are worked on for the sake of better or fewer tetrahedra.
+constexpr std::size_t kMendBudget = 40'000;
+constexpr std::size_t kStartBudget = 4'000;
 // A size bound determines a mesh of less than so many times the tetrahedra it asks for.
 constexpr double kSizedShare = 2.5;
 // A mesh with a dihedral angle of a sine below this counts as larger by a factor.
-constexpr double kPoorSine = 0.087;  // 5 degrees
+constexpr double kPoorSine = 0.26;         // 15 degrees
+constexpr double kPoorExemptSine = 0.087;  // 5 degrees: the input may have few more
 constexpr double kPoorFactor = 1.5;
 
 using Clock = std::chrono::steady_clock;
@@ -32,39 +40,54 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+bool is_poor(const RefinedSolid& mesh) {
+  return mesh.least_sine < kPoorSine || mesh.least_exempt_sine < kPoorExemptSine;
+}
+
 double cost(const RefinedSolid& mesh) {
-  return static_cast<double>(mesh.count()) * (mesh.least_sine < kPoorSine ? kPoorFactor : 1);
+  return static_cast<double>(mesh.count()) * (is_poor(mesh) ? kPoorFactor : 1);
 }
 
 bool is_better(const RefinedSolid& a, const RefinedSolid& b) {
   return a.guarded != b.guarded ? a.guarded < b.guarded : cost(a) < cost(b);
 }
 
-bool is_worth_another_start(const RefinedSolid& mesh, const MeshOptions& options) {
-  if (options.plain) return false;
-  if (mesh.guarded > 0 || mesh.least_sine < kPoorSine) return mesh.count() <= kMendableCell;
-  return mesh.count() <= kSmallCell &&
+bool is_worth_another_start(const RefinedSolid& mesh,
+                            int starts,
+                            std::size_t effort,
+                            const MeshOptions& options) {
+  if (options.plain || starts >= (mesh.guarded > 0 ? kMostStartsIfBad : kMostStarts)) return false;
+  if (mesh.guarded > 0 || is_poor(mesh)) {
+    return mesh.count() <= kMendableCell && effort <= kMendBudget;
+  }
+  return mesh.count() <= kSmallCell && effort <= kStartBudget &&
          static_cast<double>(mesh.count()) > kSizedShare * mesh.least_count;
 }
 
-Result<RefinedSolid> refine_from_starts(SolidStarts& starts,
+Result<RefinedSolid> refine_from_starts(const SectorSource& source,
                                         const MeshOptions& options,
                                         ExecutionContext& context,
                                         Statistics::TimingsMs& timings) {
+  SolidStarts starts(source);
   std::optional<RefinedSolid> best;
-  for (int start = 0; start < kMostStarts; ++start) {
-    if (best && !(starts.has_next() && is_worth_another_start(*best, options))) break;
+  for (int start = 0; start < kMostStartsIfBad; ++start) {
+    if (best &&
+        !(starts.has_next() && is_worth_another_start(*best, start, starts.effort(), options)))
+      break;
     auto began = Clock::now();
     if (!best) context.report(Phase::kInitial, 0.08);
     auto solid = starts.next(context);
     timings.initial += milliseconds_since(began);
     began = Clock::now();
-    auto refined = solid ? refine_solid(std::move(*solid), options, context)
+    const std::uint64_t most =
+        best ? kMostTimesLarger * best->count() : std::numeric_limits<std::uint64_t>::max();
+    auto refined = solid ? refine_solid(std::move(*solid), options, most, context)
                          : tl::unexpected<Error>(solid.error());
     timings.refine += milliseconds_since(began);
     if (!refined) {
       if (!best || refined.error().code == ErrorCode::kCancelled) return refined;
-      break;
+      if (!context.check()) break;
+      continue;
     }
     if (!best || is_better(*refined, *best)) best = std::move(*refined);
   }
@@ -78,8 +101,7 @@ Result<MeshOutcome> mesh_solid(const SectorSource& source,
                                ExecutionContext& context) {
   MeshOutcome outcome;
   Statistics& stats = outcome.statistics;
-  SolidStarts starts(source);
-  auto refined = refine_from_starts(starts, options, context, stats.timings_ms);
+  auto refined = refine_from_starts(source, options, context, stats.timings_ms);
   if (!refined) return tl::unexpected<Error>(refined.error());
   stats.refinement = refined->refinement;
   stats.exempt = std::move(refined->exempt);

@@ -24,6 +24,11 @@ constexpr int kDepths[] = {2, 2, 3, 4, 5};
 constexpr int kDepthAlone = 4;
 constexpr int kDelaunayRounds = 4;
 
+struct Work {
+  std::uint64_t most_tets = 0;
+  SolidRefineCounters refined;
+};
+
 double total_volume(const SolidEditor& editor) {
   double sum = 0;
   for (TetId t = 0; t < editor.mesh().tet_slots(); ++t) {
@@ -64,11 +69,12 @@ Result<void> refine(SolidEditor& editor,
                     const SolidCriteria& criteria,
                     int depth,
                     ExecutionContext& context,
-                    SolidRefineCounters& total) {
+                    Work& work) {
   SolidRefiner refiner(editor, criteria, context);
+  refiner.set_most_tets(work.most_tets);
   refiner.set_max_depth(depth);
   auto done = refiner.run();
-  total += refiner.counters();
+  work.refined += refiner.counters();
   return done;
 }
 
@@ -78,7 +84,7 @@ Result<void> improve(SolidEditor& editor,
                      const SolidCriteria& criteria,
                      double goal_deg,
                      ExecutionContext& context,
-                     SolidRefineCounters& total) {
+                     Work& work) {
   const double goal = std::sin(goal_deg * std::numbers::pi / 180);
   for (std::size_t round = 0; round < std::size(kDepths); ++round) {
     context.report(Phase::kImprove, 0.6 + 0.05 * static_cast<double>(round),
@@ -88,13 +94,14 @@ Result<void> improve(SolidEditor& editor,
     SolidImprover improver(surgery, criteria, context);
     if (auto ok = improver.round(goal); !ok) return ok;
     if (round + 1 >= kRounds && !has_bad_tet(editor, criteria)) break;
-    if (auto ok = refine(editor, criteria, kDepths[round], context, total); !ok) return ok;
+    if (auto ok = refine(editor, criteria, kDepths[round], context, work); !ok) return ok;
   }
   SolidSurgery surgery(editor, criteria);
   return SolidImprover(surgery, criteria, context).mend(goal);
 }
 
-// Counts the exempt by reason and finds the worst shape. A broken size bound must not be handed out.
+// Counts the exempt by reason and finds the worst shape. A broken size bound must not be handed
+// out.
 Result<void> count_exempt(const SolidEditor& editor,
                           const SolidCriteria& criteria,
                           RefinedSolid& result) {
@@ -103,9 +110,12 @@ Result<void> count_exempt(const SolidEditor& editor,
   for (TetId t = 0; t < mesh.tet_slots(); ++t) {
     if (!mesh.alive(t)) continue;
     const TetMeasures& m = editor.measures(t);
-    result.least_sine = std::min(
-        result.least_sine, min_dihedral_sine(mesh.corner_point(t, 0), mesh.corner_point(t, 1),
-                                             mesh.corner_point(t, 2), mesh.corner_point(t, 3)));
+    const double sine = min_dihedral_sine(mesh.corner_point(t, 0), mesh.corner_point(t, 1),
+                                          mesh.corner_point(t, 2), mesh.corner_point(t, 3));
+    const SolidExemption exemption = criteria.exemption(mesh, mesh.tet(t));
+    double& least =
+        exemption == SolidExemption::kNone ? result.least_sine : result.least_exempt_sine;
+    least = std::min(least, sine);
     if (criteria.size_excess2(m, mesh.tet(t).region) > 1) {
       const Point3 x = mesh.corner_point(t, 0);
       return fail(ErrorCode::kBoundUnreachable,
@@ -115,7 +125,7 @@ Result<void> count_exempt(const SolidEditor& editor,
                       ") of the axis' frame stays too large; raise max_volume or max_edge");
     }
     if (!criteria.is_bad(m, mesh.tet(t).region, false)) continue;
-    switch (criteria.exemption(mesh, mesh.tet(t))) {
+    switch (exemption) {
       case SolidExemption::kSmallInputAngle: ++sharp; break;
       case SolidExemption::kAxis: ++axis; break;
       case SolidExemption::kNone: ++result.guarded; break;
@@ -132,14 +142,14 @@ Result<void> refine_alone(SolidEditor& editor,
                           const SolidCriteria& criteria,
                           const MeshOptions& options,
                           ExecutionContext& context,
-                          SolidRefineCounters& total) {
-  if (auto ok = refine(editor, criteria, kDepthAlone, context, total); !ok) return ok;
+                          Work& work) {
+  if (auto ok = refine(editor, criteria, kDepthAlone, context, work); !ok) return ok;
   // What flips make bad is refined again.
   for (int round = 0; options.delaunay && round < kDelaunayRounds; ++round) {
     const auto flips = legalise(editor, context);
     if (!flips) return tl::unexpected<Error>(flips.error());
     if (*flips == 0) break;
-    if (auto ok = refine(editor, criteria, kDepthAlone, context, total); !ok) return ok;
+    if (auto ok = refine(editor, criteria, kDepthAlone, context, work); !ok) return ok;
   }
   return {};
 }
@@ -164,6 +174,7 @@ Statistics::Refinement count_work(const SolidEditor& editor, const SolidRefineCo
 
 Result<RefinedSolid> refine_solid(InitialTetrahedralization solid,
                                   const MeshOptions& options,
+                                  std::uint64_t most_tets,
                                   ExecutionContext& context) {
   RefinedSolid result;
   result.solid = std::move(solid);
@@ -178,17 +189,18 @@ Result<RefinedSolid> refine_solid(InitialTetrahedralization solid,
     SolidSurgery surgery(editor, criteria);
     static_cast<void>(SolidImprover(surgery, criteria, context).collapse_cut_vertices());
   }
-  SolidRefineCounters refined;
+  Work work;
+  work.most_tets = most_tets;
   if (options.delaunay || options.plain) {
-    auto ok = refine_alone(editor, criteria, options, context, refined);
+    auto ok = refine_alone(editor, criteria, options, context, work);
     if (!ok) return tl::unexpected<Error>(ok.error());
   } else {
-    auto ok = refine(editor, criteria, kDepths[0], context, refined);
+    auto ok = refine(editor, criteria, kDepths[0], context, work);
     const double goal_deg = std::max(kGoalDeg, options.min_dihedral_deg);
-    if (ok) ok = improve(editor, criteria, goal_deg, context, refined);
+    if (ok) ok = improve(editor, criteria, goal_deg, context, work);
     if (!ok) return tl::unexpected<Error>(ok.error());
   }
-  result.refinement = count_work(editor, refined);
+  result.refinement = count_work(editor, work.refined);
   const auto report = validate_tetrahedra(mesh, ValidationLevel::kEmbedding, volume);
   if (!report) return tl::unexpected<Error>(report.error());
   result.delaunay = count_illegal(editor) == 0;

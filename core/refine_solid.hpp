@@ -20,18 +20,21 @@ struct RefinedSolid {
   bool delaunay = true;
   // Tetrahedra over the radius-edge bound that nothing of the input excuses.
   std::uint64_t guarded = 0;
-  // Of all dihedral angles.
+  // Of the dihedral angles of the tetrahedra without and with an excuse.
   double least_sine = 1;
+  double least_exempt_sine = 1;
   // Tetrahedra that the volume bounds ask for by themselves.
   double least_count = 0;
 
   [[nodiscard]] std::uint64_t count() const { return solid.mesh.tet_count(); }
 };
 
+// `most_tets`: a mesh that gets larger while it is refined is given up.
 // Errors: kElementLimit, kTimeLimit, kCancelled, kBoundUnreachable, kInternal (the mesh is not
 // valid).
 [[nodiscard]] Result<RefinedSolid> refine_solid(InitialTetrahedralization solid,
                                                 const MeshOptions& options,
+                                                std::uint64_t most_tets,
                                                 ExecutionContext& context);
 
 }  // namespace symcell

@@ -9,6 +9,11 @@ namespace {
 
 // Sectors that are tried before a model is given up.
 constexpr std::int32_t kMaxSectors = 40;
+// Triangles that are worked on for the sake of a better cut, and candidates that are compared.
+constexpr std::size_t kCompareBudget = 150'000;
+constexpr std::size_t kMostCompared = 8;
+// Sectors that promise a mesh larger by this factor than one that went well are left out.
+constexpr double kMostCostlier = 2.5;
 
 bool is_limit(ErrorCode code) {
   return code == ErrorCode::kCancelled || code == ErrorCode::kTimeLimit ||
@@ -18,6 +23,12 @@ bool is_limit(ErrorCode code) {
 // What a wrong seed or a wrong model causes is so for every sector.
 bool is_worth_another_sector(ErrorCode code) {
   return code == ErrorCode::kTetrahedralizationFailed || code == ErrorCode::kInternal;
+}
+
+std::int32_t worth_comparing(const SectorSource& source) {
+  if (source.effort() == 0) return 1;
+  return static_cast<std::int32_t>(
+      std::clamp<std::size_t>(kCompareBudget / source.effort(), 1, kMostCompared));
 }
 
 }  // namespace
@@ -38,14 +49,13 @@ Result<void> SolidStarts::cut_one_more(ExecutionContext& context) {
 
 Result<InitialTetrahedralization> SolidStarts::next(ExecutionContext& context) {
   if (next_ == 0) {
-    while (next_ < std::min(most_, source_.worth_comparing())) {
+    while (next_ < std::min(most_, worth_comparing(source_))) {
       if (auto ok = cut_one_more(context); !ok) return tl::unexpected<Error>(ok.error());
       if (!sectors_.empty() && sectors_.back().narrow_corners == 0) break;
     }
-    std::stable_sort(sectors_.begin(), sectors_.end(),
-                     [](const SolidSector& a, const SolidSector& b) {
-                       return a.meshing_cost > b.meshing_cost;
-                     });
+    std::stable_sort(
+        sectors_.begin(), sectors_.end(),
+        [](const SolidSector& a, const SolidSector& b) { return a.meshing_cost > b.meshing_cost; });
   }
   while (has_next()) {
     if (sectors_.empty()) {
@@ -54,8 +64,12 @@ Result<InitialTetrahedralization> SolidStarts::next(ExecutionContext& context) {
     }
     const SolidSector sector = std::move(sectors_.back());
     sectors_.pop_back();
+    if (sector.meshing_cost > kMostCostlier * cost_) continue;
     auto solid = tetrahedralize_sector(sector, context);
-    if (solid) return solid;
+    if (solid) {
+      cost_ = std::min(cost_, sector.meshing_cost);
+      return solid;
+    }
     last_ = solid.error();
     if (!is_worth_another_sector(last_.code)) return solid;
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -24,6 +25,11 @@ class SolidStarts {
   // Errors: kTetrahedralizationFailed (of all that were left), model codes, limits.
   [[nodiscard]] Result<InitialTetrahedralization> next(ExecutionContext& context);
 
+  // Triangles that were worked on so far.
+  [[nodiscard]] std::size_t effort() const {
+    return static_cast<std::size_t>(next_) * source_.effort();
+  }
+
  private:
   [[nodiscard]] Result<void> cut_one_more(ExecutionContext& context);
 
@@ -31,6 +37,7 @@ class SolidStarts {
   std::int32_t most_;
   std::int32_t next_ = 0;             // candidate of the source
   std::vector<SolidSector> sectors_;  // cut already; the most promising is the last
+  double cost_ = std::numeric_limits<double>::infinity();  // least of those that went well
   Error last_;
 };
 

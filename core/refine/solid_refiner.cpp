@@ -66,6 +66,9 @@ Result<void> SolidRefiner::run() {
   for (std::uint64_t step = 0; !queue_.empty(); ++step) {
     if (step % kCheckEvery == 0) {
       if (auto ok = context_.check(mesh_.tet_count()); !ok) return ok;
+      if (mesh_.tet_count() > most_tets_) {
+        return fail(ErrorCode::kElementLimit, "more tetrahedra than are wanted");
+      }
       const double left = static_cast<double>(queue_.size());
       context_.report(Phase::kRefine, 0.15 + 0.45 * (1 - left / std::max(initial, left)),
                       mesh_.tet_count(),

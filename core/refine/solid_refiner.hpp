@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <queue>
 #include <vector>
 
@@ -51,6 +52,9 @@ class SolidRefiner {
   // chains leave some bad tetrahedra to the improvement, which mends most of them with far fewer
   // points.
   void set_max_depth(int depth) { max_depth_ = depth; }
+
+  // The run ends with kElementLimit where the mesh gets larger than this.
+  void set_most_tets(std::uint64_t most) { most_tets_ = most; }
 
   // Until no tetrahedron is bad but the exempt and those whose points were refused.
   // Errors: kElementLimit, kTimeLimit, kCancelled.
@@ -117,6 +121,7 @@ class SolidRefiner {
   std::priority_queue<Entry> queue_;
   int max_depth_ = kMaxChain;
   std::uint64_t shape_budget_ = 0;
+  std::uint64_t most_tets_ = std::numeric_limits<std::uint64_t>::max();
   std::vector<std::uint8_t> depth_;  // per vertex
   Cavity cavity_;
   SolidRefineCounters counters_;

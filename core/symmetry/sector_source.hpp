@@ -32,8 +32,8 @@ class SectorSource {
 
   // The number of different sectors that may be asked for, >= 1.
   [[nodiscard]] virtual std::int32_t candidates() const = 0;
-  // How many of the first candidates are worth comparing.
-  [[nodiscard]] virtual std::int32_t worth_comparing() const { return 1; }
+  // Triangles that are worked on for one candidate. 0: candidates differ in nothing but the cut.
+  [[nodiscard]] virtual std::size_t effort() const { return 0; }
   // Candidate `index` in [0, candidates()), the most promising first.  Errors: kInternal or a model
   // code if this candidate cannot be cut; limits.
   [[nodiscard]] virtual Result<SolidSector> sector(std::int32_t index,

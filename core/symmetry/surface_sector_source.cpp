@@ -32,22 +32,22 @@ constexpr double kLeastNoiseRel = 1e-6;
 // Facets of CAD parts may be so far from flat, of the tolerance, by the axis' own error.
 constexpr double kFlatShareOfTolerance = 0.02;
 // Shares of the tolerance that the improvement of the triangles may use, tried in turn until hardly
-// any thin triangle is left, and two at least: as a rule the larger one gives the coarser surface.
+// any thin triangle is left. With narrow corners two results are enough.
 constexpr std::array<double, 6> kImproveShares = {0.35, 0.3, 0.25, 0.2, 0.1, 0.05};
-constexpr int kLeastTaken = 2;
+constexpr int kEnoughTaken = 2;
 // So many triangles of curved parts may be thin: height below a fifth of the longest side.
 constexpr double kThinShape = 0.2;
 constexpr double kThinShare = 0.002;
 // In a corner below asin(1 / 2B) every subfacet has a circumradius above B times its shortest side,
 // and so has the tetrahedron on it; B is the default bound.
 constexpr double kNarrowCorner = 20.71 * std::numbers::pi / 180;
-constexpr double kNarrowCost = 100;
-// Boundary squared over area of a square, a triangle each: strips cost as much as they are long for
-// their width.
-constexpr double kSquareRound = 8;
-// So many triangles are improved for the sake of a better cut, by at most so many candidates.
-constexpr std::size_t kCompareBudget = 150'000;
-constexpr std::int32_t kMostCompared = 8;
+// Each counts as so many elements, and any of them as so much more of all: a mesh without bad
+// tetrahedra is worth some more good ones.
+constexpr double kNarrowCost = 400;
+constexpr double kNarrowFactor = 1.5;
+// Boundary squared over area is 16 for a square and 4 times length over width for a strip, which
+// takes two triangles for each square of its width.
+constexpr double kSquareRound = 2;
 // Of its longest side: no triangle counts as flatter.
 constexpr double kLeastHeight = 1e-4;
 // A sector's volume times n against the input's.
@@ -83,10 +83,10 @@ std::map<std::int32_t, PatchFigures> patch_figures(const QuotientSurface& s,
   for (std::size_t t = 0; t < s.triangles.size(); ++t) {
     if (s.patch[t] < 0) continue;
     const QuotientTriangle& c = s.triangles[t];
-    patches[s.patch[t]].area += length(area_normal(corner_point(s, rotations, c[0]),
-                                                   corner_point(s, rotations, c[1]),
-                                                   corner_point(s, rotations, c[2]))) /
-                                2;
+    patches[s.patch[t]].area +=
+        length(area_normal(corner_point(s, rotations, c[0]), corner_point(s, rotations, c[1]),
+                           corner_point(s, rotations, c[2]))) /
+        2;
   }
   const std::vector<QuotientEdgeUse> uses = sorted_edge_uses(s);
   for (std::size_t i = 0; i + 1 < uses.size(); i += 2) {
@@ -131,6 +131,7 @@ SectorShape shape_of(const QuotientSurface& s) {
   }
   for (const auto& [corner, angle] : corners) shape.narrow += angle < kNarrowCorner ? 1 : 0;
   shape.cost += kNarrowCost * static_cast<double>(shape.narrow);
+  if (shape.narrow > 0) shape.cost *= kNarrowFactor;
   shape.thin = static_cast<double>(thin) / static_cast<double>(s.triangles.size());
   return shape;
 }
@@ -224,15 +225,11 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
       surface = std::move(improved);
       best = shape;
     }
-    if (++taken >= kLeastTaken && !best->many_thin()) break;
+    ++taken;
+    if (!best->many_thin() && (best->narrow == 0 || taken >= kEnoughTaken)) break;
   }
   if (!best) return tl::unexpected<Error>(last);
   return *best;
-}
-
-std::int32_t SurfaceSectorSource::worth_comparing() const {
-  const std::size_t triangles = full_.triangles.size() / static_cast<std::size_t>(symmetry_.fold);
-  return std::clamp(static_cast<std::int32_t>(kCompareBudget / (triangles + 1)), 1, kMostCompared);
 }
 
 Result<void> SurfaceSectorSource::check_shape(const QuotientSurface& surface,

@@ -35,7 +35,9 @@ class SurfaceSectorSource final : public SectorSource {
   [[nodiscard]] std::int32_t candidates() const override {
     return static_cast<std::int32_t>(candidates_.size());
   }
-  [[nodiscard]] std::int32_t worth_comparing() const override;
+  [[nodiscard]] std::size_t effort() const override {
+    return full_.triangles.size() / static_cast<std::size_t>(symmetry_.fold) + 1;
+  }
   [[nodiscard]] Result<SolidSector> sector(std::int32_t index,
                                            ExecutionContext& context) const override;
 
