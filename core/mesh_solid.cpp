@@ -29,6 +29,8 @@ constexpr std::size_t kMendBudget = 40'000;
 constexpr std::size_t kStartBudget = 4'000;
 // A size bound determines a mesh of less than so many times the tetrahedra it asks for.
 constexpr double kSizedShare = 2.5;
+// More bad tetrahedra than this share come of the input, whatever the cut.
+constexpr double kHopelessShare = 0.01;
 // A mesh with a dihedral angle of a sine below this counts as larger by a factor.
 constexpr double kPoorSine = 0.26;         // 15 degrees
 constexpr double kPoorExemptSine = 0.087;  // 5 degrees: the input may have few more
@@ -57,6 +59,8 @@ bool is_worth_another_start(const RefinedSolid& mesh,
                             std::size_t effort,
                             const MeshOptions& options) {
   if (options.plain || starts >= (mesh.guarded > 0 ? kMostStartsIfBad : kMostStarts)) return false;
+  if (static_cast<double>(mesh.guarded) > kHopelessShare * static_cast<double>(mesh.count()))
+    return false;
   if (mesh.guarded > 0 || is_poor(mesh)) {
     return mesh.count() <= kMendableCell && effort <= kMendBudget;
   }

@@ -25,7 +25,7 @@ constexpr double kEncroachment2 = 0.95 * 0.95;
 // Points for the sake of shape that a run may add: some in any case, some a bad tetrahedron of its
 // start, some a point that size asked for.
 constexpr std::uint64_t kLeastShapeBudget = 300;
-constexpr std::uint64_t kShapeBudgetABadTet = 12;
+constexpr std::uint64_t kShapeBudgetABadTet = 2;
 constexpr std::uint64_t kShapeBudgetASizePoint = 3;
 
 }  // namespace
@@ -119,7 +119,7 @@ bool SolidRefiner::allowed(const Cavity& cavity, const Cause& cause, double shar
     if (rho > 0) nearest = std::min(nearest, 2 * rho * std::sin(std::numbers::pi / mesh_.fold()));
   }
   if (cause.size) return nearest >= cause.least;
-  if (shape_budget_ == 0) return false;
+  if (shape_budget_ == 0 || mesh_.tet_count() > most_shaped_) return false;
   if (nearest < share * cause.shortest) return false;
   return nearest >= cause.shortest || cause.depth < max_depth_;
 }

@@ -53,6 +53,8 @@ class SolidRefiner {
   // points.
   void set_max_depth(int depth) { max_depth_ = depth; }
 
+  // No points for the sake of shape are added to meshes larger than this.
+  void set_most_shaped(std::uint64_t most) { most_shaped_ = most; }
   // The run ends with kElementLimit where the mesh gets larger than this.
   void set_most_tets(std::uint64_t most) { most_tets_ = most; }
 
@@ -121,6 +123,7 @@ class SolidRefiner {
   std::priority_queue<Entry> queue_;
   int max_depth_ = kMaxChain;
   std::uint64_t shape_budget_ = 0;
+  std::uint64_t most_shaped_ = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t most_tets_ = std::numeric_limits<std::uint64_t>::max();
   std::vector<std::uint8_t> depth_;  // per vertex
   Cavity cavity_;
