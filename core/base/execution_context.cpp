@@ -43,7 +43,7 @@ Result<void> ExecutionContext::check(std::uint64_t elements) const {
   if (elements > max_elements_) {
     return fail(ErrorCode::kElementLimit,
                 "the cell would need more than max_elements = " + std::to_string(max_elements_) +
-                    " elements; raise max_elements or relax min_angle, max_area or max_edge");
+                    " elements; raise max_elements or relax the bounds on shape and size");
   }
   return {};
 }

@@ -37,8 +37,7 @@ double SolidImprover::key(TetId t) const {
   return excess > 1 ? -excess : surgery_.shape(t);
 }
 
-bool SolidImprover::improve(TetId t, double goal) {
-  static_cast<void>(goal);
+bool SolidImprover::improve(TetId t) {
   for (const auto& e : kEdgeCorners) {
     if (surgery_.remove_edge(t, e[0], e[1])) return true;
   }
@@ -73,7 +72,7 @@ Result<void> SolidImprover::mend(double goal) {
     const Entry e = queue_.top();
     queue_.pop();
     if (!mesh_.alive(e.t) || mesh_.tet(e.t).version != e.version) continue;
-    if (!improve(e.t, goal)) continue;
+    if (!improve(e.t)) continue;
     for (const TetId t : surgery_.touched()) enqueue(t);
   }
   return {};

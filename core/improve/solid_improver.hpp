@@ -55,8 +55,7 @@ class SolidImprover {
   void find_ways(VertexId v);
   [[nodiscard]] bool merge(VertexId v, double floor, SolidSurgery::Bounds bounds);
   [[nodiscard]] double key(TetId t) const;
-  [[nodiscard]] bool needs_work(TetId t, double goal) const { return key(t) < goal; }
-  [[nodiscard]] bool improve(TetId t, double goal);
+  [[nodiscard]] bool improve(TetId t);
 
   SolidSurgery& surgery_;
   QuotientTetrahedralization& mesh_;

@@ -42,7 +42,7 @@ struct InitialTetrahedralization {
 // Vertices: sector orbit i is vertex i; kInput, kSegment or kFacet by its kind in the sector, those
 // of the interior that the tetrahedralization added are kFree. kOnSegment vertices on the axis:
 // kSegment. Errors: kTetrahedralizationFailed (the sector is not usable: try another),
-// kUnreachableSeed, kInternal, limits.
+// kUnreachableSeed, kConflictingSeeds, kInternal, limits.
 [[nodiscard]] Result<InitialTetrahedralization> tetrahedralize_sector(const SolidSector& sector,
                                                                       ExecutionContext& context);
 

@@ -24,7 +24,7 @@ constexpr std::uint64_t kCheckEvery = 256;
 constexpr double kEncroachment2 = 0.95 * 0.95;
 // Points for the sake of shape that a run may add: some in any case, some a bad tetrahedron of its
 // start, some a point that size asked for.
-constexpr std::uint64_t kLeastShapeBudget = 300;
+constexpr std::uint64_t kLeastShapeBudget = 1000;
 constexpr std::uint64_t kShapeBudgetABadTet = 2;
 constexpr std::uint64_t kShapeBudgetASizePoint = 3;
 
