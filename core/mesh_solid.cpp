@@ -62,7 +62,8 @@ bool is_worth_another_start(const RefinedSolid& mesh,
   if (static_cast<double>(mesh.guarded) > kHopelessShare * static_cast<double>(mesh.count()))
     return false;
   if (mesh.guarded > 0 || is_poor(mesh)) {
-    return mesh.count() <= kMendableCell && effort <= kMendBudget;
+    // Cuts of a surface have other triangles each, cuts of facets as given do not.
+    return mesh.count() <= (effort > 0 ? kMendableCell : kSmallCell) && effort <= kMendBudget;
   }
   return mesh.count() <= kSmallCell && effort <= kStartBudget &&
          static_cast<double>(mesh.count()) > kSizedShare * mesh.least_count;

@@ -13,6 +13,9 @@ constexpr int kMaxWalk = 2000;
 // Cavities larger than this come from huge flat tetrahedra of the first mesh: the smallest cavity
 // will do there.
 constexpr std::size_t kMaxCavity = 1500;
+// Tetrahedra that leave a cavity one after the other, each at the cost of all: where so many have
+// to, the point is in the wrong place.
+constexpr int kMaxDrops = 60;
 // Share of the way by which a point may lie in front of a subfacet and yet count as on it.
 constexpr double kOnSubfacet = 1e-6;
 // More tetrahedra than this do not meet at a point or edge of a sane mesh.
@@ -342,6 +345,7 @@ bool SolidEditor::find_cavity(Point3 p, const SolidLocation& where, Cavity& cavi
   seed_cavity(cavity);
   find_own_facets(cavity);
   grow_cavity(cavity);
+  int drops = 0;
   while (true) {
     flat_face_ = 4;
     std::int64_t bad = gather_boundary(cavity);
@@ -359,6 +363,7 @@ bool SolidEditor::find_cavity(Point3 p, const SolidLocation& where, Cavity& cavi
       }
       continue;
     }
+    if (++drops > kMaxDrops) return false;
     drop(cavity, static_cast<std::size_t>(bad));
   }
   double nearest2 = std::numeric_limits<double>::infinity();
