@@ -117,6 +117,54 @@ TEST(SolidRefiner, LimitsEndInTheirCodes) {
   }
 }
 
+// A flat prism: shape asks for many points.
+Job flat_prism(double share = 0) {
+  test::PrismShape s = test::prism_shape(6);
+  s.height = 0.05;
+  return Job(s, share);
+}
+
+TEST(SolidRefiner, MeshesLargeEnoughGetNoPointsForShape) {
+  Job run = flat_prism();
+  const std::size_t before = run.solid.mesh.tet_count();
+  SolidEditor editor(run.solid.mesh);
+  const SolidCriteria criteria(run.solid, run.options);
+  ASSERT_GT(test::count_bad(editor, criteria), 0U);
+  ExecutionContext context;
+  for (const std::uint64_t most : {std::uint64_t{0}, std::uint64_t{before + 40}}) {
+    SolidRefiner refiner(editor, criteria, context);
+    refiner.set_most_shaped(most);
+    ASSERT_TRUE(refiner.run());
+    // One point more than the last that was allowed.
+    EXPECT_LE(run.solid.mesh.tet_count(), std::max(most, std::uint64_t{before}) + 60);
+    EXPECT_EQ(run.solid.mesh.tet_count() > before, most > 0);
+  }
+}
+
+TEST(SolidRefiner, PointsForSizeAreNotCapped) {
+  Job run = flat_prism(0.001);
+  SolidEditor editor(run.solid.mesh);
+  const SolidCriteria criteria(run.solid, run.options);
+  ExecutionContext context;
+  SolidRefiner refiner(editor, criteria, context);
+  refiner.set_most_shaped(0);
+  ASSERT_TRUE(refiner.run());
+  EXPECT_EQ(test::count_bad(editor, criteria, false), 0U);
+}
+
+TEST(SolidRefiner, UnwantedSizeEndsTheRun) {
+  Job run = flat_prism(0.00001);
+  SolidEditor editor(run.solid.mesh);
+  const SolidCriteria criteria(run.solid, run.options);
+  ExecutionContext context;
+  SolidRefiner refiner(editor, criteria, context);
+  refiner.set_most_tets(500);
+  const auto done = refiner.run();
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, ErrorCode::kElementLimit);
+  EXPECT_TRUE(test::is_valid(run.solid.mesh, run.volume));
+}
+
 TEST(SolidRefiner, LessDepthMakesFewerPoints) {
   std::size_t vertices[2] = {0, 0};
   const int depths[2] = {0, SolidRefiner::kMaxChain};
