@@ -66,21 +66,27 @@ Result<MeshOutcome> mesh(const SolidCase& c) {
   return mesh_solid(**source, c.options, context);
 }
 
-TEST(MeshSolidProperty, MeshesKeepAllLaws) {
-  const SeedRange seeds = property_seeds(10);
-  for (std::uint64_t seed = seeds.begin; seed < seeds.end; ++seed) {
-    const SolidCase c = make_case(seed);
-    const auto outcome = mesh(c);
-    if (!outcome) {
-      ADD_FAILURE() << c << "\n"
-                    << error_code_name(outcome.error().code) << ": " << outcome.error().message;
-      continue;
-    }
-    EXPECT_EQ(outcome->mesh.fold % c.model.fold, 0) << c;
-    for (const std::string& law : broken_solid_laws(c.model, c.options, *outcome)) {
-      ADD_FAILURE() << c << "\n" << law;
-    }
+void expect_all_laws(const SolidCase& c) {
+  const auto outcome = mesh(c);
+  if (!outcome) {
+    ADD_FAILURE() << c << "\n"
+                  << error_code_name(outcome.error().code) << ": " << outcome.error().message;
+    return;
   }
+  EXPECT_EQ(outcome->mesh.fold % c.model.fold, 0) << c;
+  for (const std::string& law : broken_solid_laws(c.model, c.options, *outcome)) {
+    ADD_FAILURE() << c << "\n" << law;
+  }
+}
+
+TEST(MeshSolidProperty, MeshesKeepAllLaws) {
+  const SeedRange seeds = property_seeds(60);
+  for (std::uint64_t seed = seeds.begin; seed < seeds.end; ++seed) expect_all_laws(make_case(seed));
+}
+
+// Narrow sectors with acute facets, where points for shape once caused others without end.
+TEST(MeshSolidProperty, CascadesThatOnceDidNotEnd) {
+  for (const std::uint64_t seed : {290, 320, 491}) expect_all_laws(make_case(seed));
 }
 
 template <class T>
