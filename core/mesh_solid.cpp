@@ -59,14 +59,14 @@ bool is_worth_another_start(const RefinedSolid& mesh,
                             std::size_t effort,
                             const MeshOptions& options) {
   if (options.plain || starts >= (mesh.guarded > 0 ? kMostStartsIfBad : kMostStarts)) return false;
-  if (static_cast<double>(mesh.guarded) > kHopelessShare * static_cast<double>(mesh.count()))
-    return false;
+  const auto count = static_cast<double>(mesh.count());
+  if (static_cast<double>(mesh.guarded) > kHopelessShare * count) return false;
   if (mesh.guarded > 0 || is_poor(mesh)) {
     // Cuts of a surface have other triangles each, cuts of facets as given do not.
     return mesh.count() <= (effort > 0 ? kMendableCell : kSmallCell) && effort <= kMendBudget;
   }
   return mesh.count() <= kSmallCell && effort <= kStartBudget &&
-         static_cast<double>(mesh.count()) > kSizedShare * mesh.least_count;
+         count > kSizedShare * mesh.least_count;
 }
 
 Result<RefinedSolid> refine_from_starts(const SectorSource& source,
@@ -75,10 +75,10 @@ Result<RefinedSolid> refine_from_starts(const SectorSource& source,
                                         Statistics::TimingsMs& timings) {
   SolidStarts starts(source);
   std::optional<RefinedSolid> best;
+  Error last;
   for (int start = 0; start < kMostStartsIfBad; ++start) {
-    if (best &&
-        !(starts.has_next() && is_worth_another_start(*best, start, starts.effort(), options)))
-      break;
+    if (start > 0 && !starts.has_next()) break;
+    if (best && !is_worth_another_start(*best, start, starts.effort(), options)) break;
     auto began = Clock::now();
     if (!best) context.report(Phase::kInitial, 0.08);
     auto solid = starts.next(context);
@@ -89,13 +89,17 @@ Result<RefinedSolid> refine_from_starts(const SectorSource& source,
     auto refined = solid ? refine_solid(std::move(*solid), options, most, context)
                          : tl::unexpected<Error>(solid.error());
     timings.refine += milliseconds_since(began);
-    if (!refined) {
-      if (!best || refined.error().code == ErrorCode::kCancelled) return refined;
-      if (!context.check()) break;
+    if (refined) {
+      if (!best || is_better(*refined, *best)) best = std::move(*refined);
       continue;
     }
-    if (!best || is_better(*refined, *best)) best = std::move(*refined);
+    last = refined.error();
+    // A mesh that turns out invalid is the fault of one cut.
+    const bool may_go_on = best || last.code == ErrorCode::kInternal;
+    if (!may_go_on || last.code == ErrorCode::kCancelled) return refined;
+    if (!context.check()) break;
   }
+  if (!best) return tl::unexpected<Error>(last);
   return std::move(*best);
 }
 

@@ -26,8 +26,8 @@ constexpr int kDepths[] = {2, 2, 3, 4, 5};
 constexpr int kDepthsAlone[] = {2, 3, 4};
 constexpr int kDelaunayRounds = 4;
 
-// What the later runs of refinement add for the sake of shape is little in models without acute
-// input: a tenth as a rule. Where it is not, it is a cascade.
+// What later runs of refinement add for the sake of shape is little in models without acute input.
+// Where it is not, it is a cascade.
 constexpr std::uint64_t kMostGrowth = 4;
 constexpr std::uint64_t kLeastGrowth = 2'000;
 
@@ -108,6 +108,7 @@ Result<void> improve(SolidEditor& editor,
     if (auto ok = refine(editor, criteria, kDepths[round], context, work); !ok) return ok;
   }
   SolidSurgery surgery(editor, criteria);
+  surgery.keep_size();
   return SolidImprover(surgery, criteria, context).mend(goal);
 }
 

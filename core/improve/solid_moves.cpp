@@ -51,7 +51,7 @@ SolidSurgery::Worth SolidSurgery::star_worth_at(Point3 p, double least, double m
     w.shape = std::min(w.shape, shape);
     if (shape <= least) return w;
     const TetMeasures m = measure_tet(x[0], x[1], x[2], x[3]);
-    w.excess = std::max(w.excess, criteria_.excess(m, s.region, s.exempt));
+    w.excess = std::max(w.excess, excess_of(m, s.region, s.exempt));
     if (w.excess > most) return w;
   }
   return w;

@@ -13,6 +13,9 @@ constexpr std::size_t kMaxRing = 8;
 // While a bound is broken, shapes may get worse, but not below this sine.
 constexpr double kPoorShape = 0.3;
 
+// Beyond any excess of a radius-edge ratio that is not of a flat tetrahedron.
+constexpr double kOversized = 1e12;
+
 bool is_flat(const TetMeasures& m) {
   return 6 * m.volume <= kMinRelativeVolume * m.longest2 * std::sqrt(m.longest2);
 }
@@ -29,6 +32,13 @@ SolidSurgery::SolidSurgery(SolidEditor& editor, const SolidCriteria& criteria)
   }
 }
 
+double SolidSurgery::excess_of(const TetMeasures& m, std::int32_t region, bool exempt) const {
+  const double excess = criteria_.excess(m, region, exempt);
+  if (!size_kept_ || excess <= 1) return excess;
+  const double sized = criteria_.size_excess2(m, region);
+  return sized > 1 ? kOversized * sized : excess;
+}
+
 void SolidSurgery::include(Worth& w, double shape, double excess) const {
   w.shape = std::min(w.shape, shape);
   w.excess = std::max(w.excess, excess);
@@ -39,7 +49,7 @@ SolidSurgery::Worth SolidSurgery::worth_of(std::span<const TetCopy> tets) const 
   for (const TetCopy& c : tets) {
     const Tet& t = mesh_.tet(c.t);
     const bool exempt = criteria_.exemption(mesh_, t) != SolidExemption::kNone;
-    include(w, shapes_[c.t], criteria_.excess(editor_.measures(c.t), t.region, exempt));
+    include(w, shapes_[c.t], excess_of(editor_.measures(c.t), t.region, exempt));
   }
   return w;
 }
@@ -51,7 +61,7 @@ SolidSurgery::Worth SolidSurgery::worth_of(std::span<const NewTet> tets) const {
                  d = mesh_.lift(t.c[3]);
     const TetMeasures m = measure_tet(a, b, c, d);
     if (is_flat(m)) return {-1, std::numeric_limits<double>::infinity()};
-    include(w, min_dihedral_sine(a, b, c, d), criteria_.excess(m, t.region, exempt(t)));
+    include(w, min_dihedral_sine(a, b, c, d), excess_of(m, t.region, exempt(t)));
   }
   return w;
 }
@@ -74,7 +84,7 @@ bool SolidSurgery::all_within(std::span<const NewTet> tets,
     const Point3 a = place(t.c[0]), b = place(t.c[1]), c = place(t.c[2]), d = place(t.c[3]);
     if (six_volumes(a, b, c, d) <= 0) return false;
     const TetMeasures m = measure_tet(a, b, c, d);
-    if (is_flat(m) || criteria_.excess(m, t.region, exempt(t)) > most_excess) return false;
+    if (is_flat(m) || excess_of(m, t.region, exempt(t)) > most_excess) return false;
     if (min_dihedral_sine(a, b, c, d) < least_shape) return false;
   }
   return true;

@@ -31,6 +31,8 @@ class SolidSurgery {
 
   // Excess (SolidCriteria::excess) that collapses may leave for moves and refinement to mend.
   void allow_excess(double excess) { allowed_excess_ = excess; }
+  // From now on no bound on size is broken for the sake of the ratio: no refinement follows.
+  void keep_size() { size_kept_ = true; }
 
   // Of the tetrahedra that an operation made or changed.
   [[nodiscard]] std::span<const TetId> touched() const { return touched_; }
@@ -53,6 +55,7 @@ class SolidSurgery {
     double shape = 2;   // the smallest
     double excess = 0;  // the largest
   };
+  [[nodiscard]] double excess_of(const TetMeasures& m, std::int32_t region, bool exempt) const;
   void include(Worth& w, double shape, double excess) const;
   [[nodiscard]] Worth worth_of(std::span<const TetCopy> tets) const;
   // With the corner `moved` at `place`, if given.
@@ -116,6 +119,7 @@ class SolidSurgery {
   QuotientTetrahedralization& mesh_;
   const SolidCriteria& criteria_;
   double allowed_excess_ = 1;
+  bool size_kept_ = false;
   std::vector<double> shapes_;
   std::vector<TetId> touched_;
 

@@ -89,6 +89,11 @@ TEST(MeshSolidProperty, CascadesThatOnceDidNotEnd) {
   for (const std::uint64_t seed : {290, 320, 491}) expect_all_laws(make_case(seed));
 }
 
+// A volume bound that mending the ratio once broke when no refinement followed.
+TEST(MeshSolidProperty, LastMendKeepsTheVolumeBound) {
+  expect_all_laws(make_case(1499));
+}
+
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() &&
