@@ -34,6 +34,7 @@ constexpr double kHopelessShare = 0.01;
 // A mesh with a dihedral angle of a sine below this counts as larger by a factor.
 constexpr double kPoorSine = 0.26;         // 15 degrees
 constexpr double kPoorExemptSine = 0.087;  // 5 degrees: the input may have few more
+constexpr double kSizedPoorSine = 0.174;   // 10 degrees: large meshes take their time
 constexpr double kPoorFactor = 1.5;
 
 using Clock = std::chrono::steady_clock;
@@ -61,12 +62,13 @@ bool is_worth_another_start(const RefinedSolid& mesh,
   if (options.plain || starts >= (mesh.guarded > 0 ? kMostStartsIfBad : kMostStarts)) return false;
   const auto count = static_cast<double>(mesh.count());
   if (static_cast<double>(mesh.guarded) > kHopelessShare * count) return false;
-  if (mesh.guarded > 0 || is_poor(mesh)) {
+  const bool sized = count <= kSizedShare * mesh.least_count;
+  const bool poor = sized ? mesh.least_sine < kSizedPoorSine : is_poor(mesh);
+  if (mesh.guarded > 0 || poor) {
     // Cuts of a surface have other triangles each, cuts of facets as given do not.
     return mesh.count() <= (effort > 0 ? kMendableCell : kSmallCell) && effort <= kMendBudget;
   }
-  return mesh.count() <= kSmallCell && effort <= kStartBudget &&
-         count > kSizedShare * mesh.least_count;
+  return !sized && mesh.count() <= kSmallCell && effort <= kStartBudget;
 }
 
 Result<RefinedSolid> refine_from_starts(const SectorSource& source,
