@@ -349,11 +349,9 @@ class SolidLaws {
       broken("quality: ", bad, " elements are above the radius-edge bound, ", exempt,
              " are told as exempt");
     }
-    // Where the axis is inside and sectors are narrow, whole cells are; baffles meet walls at any
-    // angle; and refinement that nothing improves leaves much between near copies.
-    const bool improved = !options_.plain && !options_.delaunay;
-    const bool narrow = cell_.fold > 6 && (model_.axis_inside || !improved);
-    if (!model_.acute && !model_.has_baffles && !narrow && bad > cell_.element_count() / 5 + 10) {
+    // Where the axis is inside and sectors are narrow, whole cells are.
+    const bool narrow = model_.axis_inside && cell_.fold > 6;
+    if (!model_.acute && !narrow && bad > cell_.element_count() / 5 + 10) {
       std::string reasons;
       for (const ExemptCount& e : outcome_.statistics.exempt) {
         reasons += " " + e.reason + " " + std::to_string(e.elements);

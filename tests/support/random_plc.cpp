@@ -252,7 +252,6 @@ class Maker {
     }
     result_.plain_surface = false;
     result_.description += ", baffles";
-    result_.has_baffles = true;
   }
 
   void needles(double phase, double radius, double z, double room) {

@@ -27,7 +27,6 @@ struct RandomPlc {
   double diameter = 0;  // of the bounding box
   bool axis_inside = false;
   bool acute = false;
-  bool has_baffles = false;  // dangling facets, at any angle
   // Every segment bounds two facets, and what they enclose is all meshed.
   bool plain_surface = true;
 };
