@@ -24,6 +24,11 @@ struct JsonPlace {
   const char* wanted;  // in words, for "... belongs here, not ..."
 };
 
+// Whether a member of an object was there; `seen` as the walker tells it: a bit a place's id.
+[[nodiscard]] inline bool has(std::uint32_t seen, const JsonPlace& place) {
+  return (seen >> place.id & 1U) != 0;
+}
+
 class JsonWalker {
  public:
   explicit JsonWalker(std::string_view bytes) : bytes_(bytes), position_(bytes.data()) {}

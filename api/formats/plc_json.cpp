@@ -52,10 +52,6 @@ constexpr NamedPlace kFacetKeys[] = {
 constexpr NamedPlace kRegionKeys[] = {
     {"point", &kPoint}, {"attribute", &kAttribute}, {"max_volume", &kMaxVolume}};
 
-bool has(std::uint32_t seen, const JsonPlace& place) {
-  return (seen >> place.id & 1U) != 0;
-}
-
 class PlcReader final : public internal::JsonWalker {
  public:
   using JsonWalker::JsonWalker;

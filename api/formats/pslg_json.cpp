@@ -29,10 +29,6 @@ constexpr JsonPlace kMaxArea{12, JsonShape::kNumberOrNull, "a number"};
 constexpr JsonPlace kNumber{13, JsonShape::kNumber, "a number"};
 constexpr JsonPlace kComment{14, JsonShape::kIgnored, ""};
 
-bool has(std::uint32_t seen, const JsonPlace& place) {
-  return (seen >> place.id & 1U) != 0;
-}
-
 class PslgReader final : public internal::JsonWalker {
  public:
   using JsonWalker::JsonWalker;
