@@ -18,6 +18,8 @@ namespace {
 
 // The improvement works on tetrahedra with a dihedral angle below this or above its supplement.
 constexpr double kGoalDeg = 30;
+// And may cost a vertex where one is below this.
+constexpr double kInsertionGoalDeg = 25;
 // Rounds of improvement at least, and the depths of refinement after each.
 constexpr std::size_t kRounds = 2;
 constexpr int kDepths[] = {2, 2, 3, 4, 5};
@@ -109,7 +111,9 @@ Result<void> improve(SolidEditor& editor,
   }
   SolidSurgery surgery(editor, criteria);
   surgery.keep_size();
-  return SolidImprover(surgery, criteria, context).mend(goal);
+  SolidImprover improver(surgery, criteria, context);
+  improver.allow_insertion(std::sin(kInsertionGoalDeg * std::numbers::pi / 180));
+  return improver.mend(goal);
 }
 
 // Counts the exempt by reason and finds the worst shape. A broken size bound must not be handed

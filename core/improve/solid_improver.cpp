@@ -52,7 +52,7 @@ bool SolidImprover::improve(TetId t) {
     if (surgery_.collapse(t, e[0], e[1], shape * (1 + kGain))) return true;
     if (surgery_.collapse(t, e[1], e[0], shape * (1 + kGain))) return true;
   }
-  return false;
+  return shape < insertion_goal_ && surgery_.insert_point(t);
 }
 
 Result<void> SolidImprover::mend(double goal) {

@@ -31,6 +31,8 @@ class SolidImprover {
   [[nodiscard]] Result<void> coarsen(double floor);
   // Works on tetrahedra whose shape is below `goal` or that break a bound until nothing helps.
   [[nodiscard]] Result<void> mend(double goal);
+  // From now on mend() inserts vertices where nothing else helps a tetrahedron below `goal`.
+  void allow_insertion(double goal) { insertion_goal_ = goal; }
   // Moves every vertex once.
   [[nodiscard]] Result<void> smooth_all();
 
@@ -62,6 +64,7 @@ class SolidImprover {
   const SolidCriteria& criteria_;
   ExecutionContext& context_;
   std::priority_queue<Entry> queue_;
+  double insertion_goal_ = -1;
   std::vector<TetCopy> star_;
   std::vector<Corner> seen_;
   std::vector<Way> ways_;

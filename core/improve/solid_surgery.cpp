@@ -10,6 +10,8 @@ namespace {
 
 // Rings of more tetrahedra are hardly ever worth removing, and cost grows with the cube.
 constexpr std::size_t kMaxRing = 8;
+// What a new vertex must better the worst shape by, to be worth its tetrahedra.
+constexpr double kInsertionGain = 1.15;
 // While a bound is broken, shapes may get worse, but not below this sine.
 constexpr double kPoorShape = 0.3;
 
@@ -23,7 +25,7 @@ bool is_flat(const TetMeasures& m) {
 }  // namespace
 
 SolidSurgery::SolidSurgery(SolidEditor& editor, const SolidCriteria& criteria)
-    : editor_(editor), mesh_(editor.mesh()), criteria_(criteria) {
+    : editor_(editor), mesh_(editor.mesh()), criteria_(criteria), insertion_(editor, criteria) {
   shapes_.resize(mesh_.tet_slots());
   for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
     if (!mesh_.alive(t)) continue;
@@ -105,6 +107,11 @@ bool SolidSurgery::apply(std::span<const TetCopy> removed,
                          std::span<const NewTet> added,
                          Outline outline) {
   if (!editor_.replace(removed, added, outline)) return false;
+  note_added();
+  return true;
+}
+
+void SolidSurgery::note_added() {
   ++edits_;
   if (shapes_.size() < mesh_.tet_slots()) shapes_.resize(mesh_.tet_slots());
   touched_.assign(mesh_.added_ids().begin(), mesh_.added_ids().end());
@@ -112,7 +119,6 @@ bool SolidSurgery::apply(std::span<const TetCopy> removed,
     const auto x = editor_.points({t, 0});
     shapes_[t] = min_dihedral_sine(x[0], x[1], x[2], x[3]);
   }
-  return true;
 }
 
 void SolidSurgery::refresh(TetId t) {
@@ -311,6 +317,29 @@ bool SolidSurgery::remove_face(TetId t, std::uint32_t i) {
   if (!better(worth_of(new_tets_), before) || !apply(removed, new_tets_, Outline::kKept))
     return false;
   editor_.count_flip();
+  return true;
+}
+
+bool SolidSurgery::insert_point(TetId t) {
+  if (!insertion_.search(t, kInsertionGain * shapes_[t])) return false;
+  const Cavity& cavity = insertion_.best();
+  const Worth before = worth_of(cavity.tets);
+  Worth now;
+  for (const CavityFace& f : cavity.faces) {
+    const TetMeasures m = measure_tet(cavity.point, f.points[0], f.points[1], f.points[2]);
+    if (is_flat(m)) return false;
+    bool exempt = false;
+    for (const Corner& x : f.corners) {
+      exempt = exempt || criteria_.exemption(mesh_, x.v) != SolidExemption::kNone;
+    }
+    include(now, min_dihedral_sine(cavity.point, f.points[0], f.points[1], f.points[2]),
+            excess_of(m, f.region, exempt));
+  }
+  if (!better(now, before)) return false;
+  if (editor_.insert(cavity, SolidVertexKind::kFree, -1, false) == SolidEditor::kNoVertex) {
+    return false;
+  }
+  note_added();
   return true;
 }
 

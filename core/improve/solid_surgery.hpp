@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/delaunay/solid_editor.hpp"
+#include "core/improve/insertion_cavity.hpp"
 #include "core/refine/solid_criteria.hpp"
 
 namespace symcell {
@@ -43,6 +44,9 @@ class SolidSurgery {
   [[nodiscard]] bool remove_face(TetId t, std::uint32_t i);
   // Moves a vertex where its star gets better; vertices of segments and facets stay on them.
   [[nodiscard]] bool smooth(VertexId v);
+  // Inserts a vertex for the sake of t's shape where its star's worst is above that of all it
+  // replaces.
+  [[nodiscard]] bool insert_point(TetId t);
   // Merges corner `from` of t into corner `to`, there or half-way. `floor`: least shape that will
   // do where the star's own worst is better; a star worse than that must not get worse.
   // Bounds::kFree: the bounds may be broken (before refinement, when they are broken anyway).
@@ -109,6 +113,7 @@ class SolidSurgery {
   [[nodiscard]] static double least_shape(double floor, const Worth& before);
   [[nodiscard]] bool do_collapse(const Collapse& plan);
   void refresh(TetId t);
+  void note_added();
 
   // Moves.
   [[nodiscard]] bool load_star(VertexId v);
@@ -139,6 +144,7 @@ class SolidSurgery {
     std::uint8_t own = 0;  // bits of the corners that are copies of the vertex
   };
   std::vector<StarTet> star_tets_;
+  InsertionCavity insertion_;
   Point3 direction_;  // of the segment, or normal of the facet, that holds the vertex
 };
 

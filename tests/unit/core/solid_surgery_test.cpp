@@ -264,6 +264,27 @@ TEST_P(SolidSurgeryFold, MovesVerticesWhereTheyBelong) {
   EXPECT_GT(facet + segment, 0);
 }
 
+// Poor tetrahedra after random flips, for each of which the worst of what is replaced gets better.
+TEST_P(SolidSurgeryFold, InsertsVertices) {
+  std::size_t vertices = 0;
+  const auto live = [&] {
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < mesh().vertex_slots(); ++v) {
+      count += mesh().kind(static_cast<VertexId>(v)) != SolidVertexKind::kDeleted ? 1 : 0;
+    }
+    return count;
+  };
+  const std::size_t segments = mesh().edges().size(), before = live();
+  const int done = run(1, [&](SolidSurgery& s, TetId t, std::uint32_t) {
+    if (s.shape(t) > 0.3 || !s.insert_point(t)) return false;
+    ++vertices;
+    return true;
+  });
+  EXPECT_GT(done, 0);
+  EXPECT_EQ(live(), before + vertices);
+  EXPECT_EQ(mesh().edges().size(), segments);
+}
+
 TEST_P(SolidSurgeryFold, MergesVertices) {
   constexpr double kFloor = 0.05;
   options_.max_volume = volume_ / 10;
