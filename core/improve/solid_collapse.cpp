@@ -1,4 +1,4 @@
-// Edge collapses.
+// Merges of a vertex into a neighbour (edge collapses).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,83 +19,74 @@ constexpr double kLeastShape = 1e-4;
 
 }  // namespace
 
-// Fills star_ and new_tets_: what goes, and what comes with the corner merged in place.
-bool SolidSurgery::plan_collapse(TetId t, std::uint32_t from, std::uint32_t to, Collapse& plan) {
-  const Corner u = mesh_.corner(t, from);
-  plan.kind = mesh_.kind(u.v);
-  if (plan.kind == SolidVertexKind::kInput) return false;
+// Loads the star of what goes; false where the two cannot be one vertex.
+bool SolidSurgery::plan_collapse(Corner goes, Corner stays, Collapse& plan) {
+  plan.kind = mesh_.kind(goes.v);
+  if (plan.kind == SolidVertexKind::kInput || stays.v == goes.v) return false;
   // The star of an axis vertex is a period, not a ball.
-  if (mesh_.on_axis(u.v) && mesh_.fold() > 1) return false;
-  // In the frame where the vertex that goes has exponent 0.
-  const Corner self{u.v, 0}, w = mesh_.shift(mesh_.corner(t, to), mesh_.subtract(0, u.k));
-  if (w.v == u.v) return false;
-  plan.goes = self;
-  plan.stays = w;
-  plan.behind = {-1, 0};
-  plan.segment = mesh_.segment_of(self, w);
+  if (mesh_.on_axis(goes.v) && mesh_.fold() > 1) return false;
+  plan.goes = goes;
+  plan.stays = stays;
+  plan.segment = mesh_.segment_of(goes, stays);
   const bool on_segment = plan.kind == SolidVertexKind::kSegment;
   if (on_segment && plan.segment == kNoSegment) return false;
-  load_collapse_star(u.v);
-  if (star_.size() > kMaxStar) return false;
   // No tetrahedron twice: a vertex next to its own copy stays.
-  const std::uint32_t epoch = mesh_.new_epoch();
+  if (!load_star(goes.v) || !star_simple_) return false;
   bool in_facet = plan.kind == SolidVertexKind::kFree;
-  new_tets_.clear();
-  for (const TetCopy& c : star_) {
-    Tet& tet = mesh_.tet(c.t);
-    if (tet.stamp == epoch) return false;
-    tet.stamp = epoch;
-    std::array<Corner, 4> x;
-    std::uint32_t own = 4;
-    bool goes = false;
-    for (std::uint32_t i = 0; i < 4; ++i) {
-      x[i] = mesh_.corner(c, i);
-      if (x[i] == self) {
-        own = i;
-      } else if (x[i].v == u.v) {
-        return false;
-      } else if (x[i] == w) {
-        goes = true;
-      }
-    }
+  for (std::size_t n = 0; n < star_.size(); ++n) {
+    const StarTet& s = star_tets_[n];
     for (std::uint32_t i = 0; on_segment && i < 4; ++i) {
-      if (i != own && x[i] != w && mesh_.segment_of(self, x[i]) == plan.segment) plan.behind = x[i];
+      if (i == s.apex || s.c[i] == stays) continue;
+      if (mesh_.segment_of(goes, s.c[i]) == plan.segment) plan.behind = s.c[i];
     }
-    for (std::uint32_t f = 0; goes && !in_facet && f < 4; ++f) {
+    if (!s.has(stays)) continue;
+    ++plan.shared;
+    for (std::uint32_t f = 0; !in_facet && f < 4; ++f) {
       // A subfacet with both the vertex and its target.
-      in_facet = tet.facet[f] == mesh_.parent(u.v) && f != own && !(x[f] == w);
+      in_facet = mesh_.tet(star_[n].t).facet[f] == mesh_.parent(goes.v) && f != s.apex &&
+                 !(s.c[f] == stays);
     }
-    if (goes) continue;
-    NewTet n;
-    n.region = tet.region;
-    for (std::uint32_t i = 0; i < 4; ++i) {
-      n.c[i] = i == own ? w : x[i];
-      if (i != own) n.facet[i] = tet.facet[i];
-    }
-    new_tets_.push_back(n);
   }
-  return on_segment ? plan.behind.v >= 0 : in_facet;
+  return plan.shared > 0 && (on_segment ? plan.behind.v >= 0 : in_facet);
 }
 
-// The star of a vertex is asked for once for each of its neighbours.
-void SolidSurgery::load_collapse_star(VertexId v) {
-  if (star_vertex_ == v && star_edits_ == edits_) return;
-  star_.clear();
-  mesh_.star(v, star_);
-  star_vertex_ = v;
-  star_edits_ = edits_;
-}
-
-bool SolidSurgery::may_shrink(std::span<const TetCopy> tets, std::size_t left) const {
-  double volume = 0, limit = 0;
-  for (const TetCopy& c : tets) {
-    volume += editor_.measures(c.t).volume;
-    limit = std::max(limit, criteria_.max_volume(mesh_.tet(c.t).region));
-  }
+bool SolidSurgery::may_shrink(double volume, double limit, std::size_t left) const {
   return volume <= kMaxFilling * limit * static_cast<double>(left);
 }
 
+// Whether what is left of the star, drawn to a place for the vertex that stays, is good enough.
+bool SolidSurgery::link_within(const Collapse& plan,
+                               Point3 place,
+                               double least_shape,
+                               double most_excess) {
+  const bool exempt = criteria_.exemption(mesh_, plan.stays.v) != SolidExemption::kNone;
+  for (std::size_t n = 0; n < star_order_.size(); ++n) {
+    const StarTet& s = star_tets_[star_order_[n]];
+    if (s.has(plan.stays)) continue;
+    const LinkTet t(place, s.link, least_shape);
+    if (t.sine > least_shape && !is_flat(t.measures) &&
+        excess_of(t.measures, s.region, exempt || s.exempt_link) <= most_excess) {
+      continue;
+    }
+    blame(n);
+    return false;
+  }
+  return true;
+}
+
+// Requires: the star of what goes is loaded and has been looked at.
 bool SolidSurgery::do_collapse(const Collapse& plan) {
+  new_tets_.clear();
+  for (std::size_t n = 0; n < star_.size(); ++n) {
+    const StarTet& s = star_tets_[n];
+    if (s.has(plan.stays)) continue;
+    NewTet& tet = new_tets_.emplace_back();
+    tet.region = s.region;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      tet.c[i] = i == s.apex ? plan.stays : s.c[i];
+      if (i != s.apex) tet.facet[i] = mesh_.tet(star_[n].t).facet[i];
+    }
+  }
   // Two subsegments in one line become one: the outline of the facets there loses a corner.
   const bool on_segment = plan.kind == SolidVertexKind::kSegment;
   if (!apply(star_, new_tets_, on_segment ? Outline::kChanged : Outline::kKept)) return false;
@@ -105,25 +96,22 @@ bool SolidSurgery::do_collapse(const Collapse& plan) {
     mesh_.edges().set(mesh_.edge_key(plan.stays, plan.behind), plan.segment);
   }
   mesh_.release_vertex(plan.goes.v);
-  star_vertex_ = -1;
   editor_.count_collapse();
   return true;
 }
 
-bool SolidSurgery::collapse(
-    TetId t, std::uint32_t from, std::uint32_t to, double floor, Bounds bounds) {
+bool SolidSurgery::merge(VertexId goes, Corner stays, double floor, Bounds bounds) {
   Collapse plan;
-  if (!plan_collapse(t, from, to, plan)) return false;
-  if (bounds == Bounds::kKept && !may_shrink(star_, new_tets_.size())) {
-    return merge_in_the_middle(plan, floor);
-  }
-  const Worth before = worth_of(star_);
-  const double most =
-      bounds == Bounds::kFree ? std::numeric_limits<double>::infinity() : most_excess(before);
-  if (all_within(new_tets_, nullptr, least_shape(floor, before), most) && do_collapse(plan)) {
+  if (!plan_collapse({goes, 0}, stays, plan)) return false;
+  const std::size_t left = star_.size() - plan.shared;
+  const bool kept = bounds == Bounds::kKept;
+  if (kept && !may_shrink(star_volume_, star_limit_, left)) return merge_in_the_middle(plan, floor);
+  const Worth& before = star_worth();
+  const double most = kept ? most_excess(before) : std::numeric_limits<double>::infinity();
+  if (link_within(plan, mesh_.lift(stays), least_shape(floor, before), most) && do_collapse(plan)) {
     return true;
   }
-  return bounds == Bounds::kKept && merge_in_the_middle(plan, floor);
+  return kept && merge_in_the_middle(plan, floor);
 }
 
 double SolidSurgery::most_excess(const Worth& before) const {
@@ -140,13 +128,22 @@ bool SolidSurgery::merge_in_the_middle(const Collapse& plan, double floor) {
   if (plan.kind != SolidVertexKind::kFree && mesh_.parent(v) != mesh_.parent(plan.goes.v)) {
     return false;
   }
+  for (const StarTet& s : star_tets()) {
+    for (const Corner& x : s.c) {
+      if (x.v == v && x != plan.stays) return false;
+    }
+  }
+  // Half of what is to be looked at is at hand, and mostly tells.
+  const Moved moved{plan.stays, 0.5 * (mesh_.point(plan.goes.v) + mesh_.lift(plan.stays))};
+  Worth before = star_worth();
+  if (!link_within(plan, moved.place, least_shape(floor, before), most_excess(before))) {
+    return false;
+  }
   other_star_.clear();
   mesh_.star(v, other_star_);
   if (other_star_.size() > kMaxStar) return false;
-  Moved moved{plan.stays, 0.5 * (mesh_.lift(plan.goes) + mesh_.lift(plan.stays))};
   stretched_.clear();
-  std::vector<TetCopy>& both = ring_.tets;
-  both.assign(star_.begin(), star_.end());
+  double volume = star_volume_, limit = star_limit_;
   for (TetCopy& c : other_star_) {
     c.e = mesh_.add(c.e, plan.stays.k);
     NewTet n;
@@ -163,21 +160,19 @@ bool SolidSurgery::merge_in_the_middle(const Collapse& plan, double floor) {
     if (copies > 1) return false;
     if (shared) continue;
     stretched_.push_back(n);
-    both.push_back(c);
+    const TetMeasures& m = editor_.measures(c.t);
+    volume += m.volume;
+    limit = std::max(limit, criteria_.max_volume(n.region));
+    include(before, shapes_[c.t], excess_of(m, n.region, exempt(n)));
   }
-  for (const NewTet& n : new_tets_) {
-    for (const Corner& x : n.c) {
-      if (x.v == v && x != plan.stays) return false;
-    }
-  }
-  if (!may_shrink(both, new_tets_.size() + stretched_.size())) return false;
-  const Worth before = worth_of(both);
-  const double least = least_shape(floor, before), most = most_excess(before);
-  if (!all_within(new_tets_, &moved, least, most) || !all_within(stretched_, &moved, least, most)) {
+  const std::size_t left = star_.size() - plan.shared + stretched_.size();
+  if (!may_shrink(volume, limit, left)) return false;
+  if (!all_within(stretched_, moved, least_shape(floor, before), most_excess(before))) {
     return false;
   }
   if (!do_collapse(plan)) return false;
   mesh_.move_vertex(v, mesh_.rotations().rotate(moved.place, mesh_.subtract(0, plan.stays.k)));
+  ++edits_;
   other_star_.clear();
   mesh_.star(v, other_star_);
   touched_.clear();

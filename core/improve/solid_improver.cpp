@@ -48,9 +48,10 @@ bool SolidImprover::improve(TetId t) {
     if (surgery_.smooth(mesh_.tet(t).v[i])) return true;
   }
   const double shape = surgery_.shape(t);
-  for (const auto& e : kEdgeCorners) {
-    if (surgery_.collapse(t, e[0], e[1], shape * (1 + kGain))) return true;
-    if (surgery_.collapse(t, e[1], e[0], shape * (1 + kGain))) return true;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    for (std::uint32_t j = 0; j < 4; ++j) {
+      if (i != j && surgery_.collapse(t, i, j, shape * (1 + kGain))) return true;
+    }
   }
   return shape < insertion_goal_ && surgery_.insert_point(t);
 }
@@ -79,46 +80,39 @@ Result<void> SolidImprover::mend(double goal) {
 }
 
 Result<void> SolidImprover::smooth_all() {
-  for (std::size_t i = 0; i < mesh_.vertex_slots(); ++i) {
-    if (i % kCheckEvery == 0) {
+  std::uint64_t step = 0;
+  for (const VertexId v : vertices_in_order()) {
+    if (step++ % kCheckEvery == 0) {
       if (auto ok = context_.check(mesh_.tet_count()); !ok) return ok;
-    }
-    const auto v = static_cast<VertexId>(i);
-    if (mesh_.kind(v) == SolidVertexKind::kDeleted || mesh_.kind(v) == SolidVertexKind::kInput) {
-      continue;
     }
     static_cast<void>(surgery_.smooth(v));
   }
   return {};
 }
 
-void SolidImprover::find_ways(VertexId v) {
-  star_.clear();
-  seen_.clear();
-  ways_.clear();
-  mesh_.star(v, star_);
-  for (const TetCopy& c : star_) {
-    std::uint32_t own = 4;
-    for (std::uint32_t k = 0; k < 4; ++k) {
-      if (mesh_.corner(c, k) == Corner{v, 0}) own = k;
-    }
-    if (own == 4) return;
-    for (std::uint32_t k = 0; k < 4; ++k) {
-      const Corner x = mesh_.corner(c, k);
-      if (k == own || x.v == v || std::find(seen_.begin(), seen_.end(), x) != seen_.end()) continue;
-      seen_.push_back(x);
-      ways_.push_back({squared_distance(mesh_.point(v), mesh_.lift(x)), c.t, own, k});
+// Those that are not the input's, in the order of the tetrahedra's slots: neighbours follow each
+// other, and what one star has brought into the cache serves the next.
+std::vector<VertexId> SolidImprover::vertices_in_order() const {
+  std::vector<VertexId> order;
+  std::vector<std::uint8_t> seen(mesh_.vertex_slots(), 0);
+  for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
+    if (!mesh_.alive(t)) continue;
+    for (const VertexId v : mesh_.tet(t).v) {
+      if (seen[static_cast<std::size_t>(v)] != 0) continue;
+      seen[static_cast<std::size_t>(v)] = 1;
+      if (mesh_.kind(v) != SolidVertexKind::kInput) order.push_back(v);
     }
   }
-  std::sort(ways_.begin(), ways_.end());
+  return order;
 }
 
 bool SolidImprover::merge(VertexId v, double floor, SolidSurgery::Bounds bounds) {
-  find_ways(v);
+  const auto neighbours = surgery_.neighbours(v);
+  targets_.assign(neighbours.begin(), neighbours.end());
   const bool coarsening = bounds == SolidSurgery::Bounds::kKept;
-  if (coarsening && ways_.size() > kMergeTargets) ways_.resize(kMergeTargets);
-  for (const Way& w : ways_) {
-    if (surgery_.collapse(w.t, w.from, w.to, floor, bounds)) return true;
+  if (coarsening && targets_.size() > kMergeTargets) targets_.resize(kMergeTargets);
+  for (const SolidSurgery::Neighbour& n : targets_) {
+    if (surgery_.merge(v, n.corner, floor, bounds)) return true;
   }
   return false;
 }
@@ -155,13 +149,12 @@ std::size_t SolidImprover::collapse_cut_vertices() {
 }
 
 Result<void> SolidImprover::coarsen(double floor) {
-  for (std::size_t i = 0; i < mesh_.vertex_slots(); ++i) {
-    if (i % kCheckEvery == 0) {
+  std::uint64_t step = 0;
+  for (const VertexId v : vertices_in_order()) {
+    if (step++ % kCheckEvery == 0) {
       if (auto ok = context_.check(mesh_.tet_count()); !ok) return ok;
     }
-    const auto v = static_cast<VertexId>(i);
-    const SolidVertexKind kind = mesh_.kind(v);
-    if (kind == SolidVertexKind::kDeleted || kind == SolidVertexKind::kInput) continue;
+    if (mesh_.kind(v) == SolidVertexKind::kDeleted) continue;
     static_cast<void>(merge(v, floor, SolidSurgery::Bounds::kKept));
   }
   return {};

@@ -45,16 +45,7 @@ class SolidImprover {
       return a.key != b.key ? a.key > b.key : a.t > b.t;
     }
   };
-  // Ways to merge a vertex: a tetrahedron with it and the corners to go and to stay, the nearest
-  // target first.
-  struct Way {
-    double squared = 0;
-    TetId t = 0;
-    std::uint32_t from = 0;
-    std::uint32_t to = 0;
-    friend auto operator<=>(const Way&, const Way&) = default;
-  };
-  void find_ways(VertexId v);
+  [[nodiscard]] std::vector<VertexId> vertices_in_order() const;
   [[nodiscard]] bool merge(VertexId v, double floor, SolidSurgery::Bounds bounds);
   [[nodiscard]] double key(TetId t) const;
   [[nodiscard]] bool improve(TetId t);
@@ -66,8 +57,7 @@ class SolidImprover {
   std::priority_queue<Entry> queue_;
   double insertion_goal_ = -1;
   std::vector<TetCopy> star_;
-  std::vector<Corner> seen_;
-  std::vector<Way> ways_;
+  std::vector<SolidSurgery::Neighbour> targets_;
 };
 
 }  // namespace symcell

@@ -7,8 +7,6 @@
 namespace symcell {
 namespace {
 
-// Stars this large are at hubs of the input; moving there is slow and seldom helps.
-constexpr std::size_t kMaxStar = 120;
 // Stars without a sine below this (25 degrees) and within all bounds are left to the mean:
 // searching on takes a third of the time and makes meshes no smaller.
 constexpr double kGoodShape = 0.42;
@@ -16,46 +14,6 @@ constexpr double kGoodShape = 0.42;
 constexpr std::array<double, 4> kSteps = {0.3, 0.15, 0.07, 0.03};
 
 }  // namespace
-
-bool SolidSurgery::load_star(VertexId v) {
-  star_vertex_ = -1;
-  star_.clear();
-  mesh_.star(v, star_);
-  if (star_.empty() || star_.size() > kMaxStar) return false;
-  star_tets_.clear();
-  for (const TetCopy& c : star_) {
-    StarTet s;
-    const Tet& t = mesh_.tet(c.t);
-    for (std::uint32_t i = 0; i < 4; ++i) {
-      s.c[i] = mesh_.corner(c, i);
-      s.p[i] = mesh_.lift(s.c[i]);
-      if (s.c[i].v == v) s.own = static_cast<std::uint8_t>(s.own | 1u << i);
-    }
-    s.region = t.region;
-    s.exempt = criteria_.exemption(mesh_, t) != SolidExemption::kNone;
-    star_tets_.push_back(s);
-  }
-  return true;
-}
-
-// Worst shape and excess of the star with the vertex at p; gives up as soon as a shape is at most
-// `least` or an excess above `most`.
-SolidSurgery::Worth SolidSurgery::star_worth_at(Point3 p, double least, double most) const {
-  Worth w;
-  for (const StarTet& s : star_tets_) {
-    auto x = s.p;
-    for (std::uint32_t i = 0; i < 4; ++i) {
-      if ((s.own >> i & 1) != 0) x[i] = mesh_.rotations().rotate(p, s.c[i].k);
-    }
-    const double shape = min_dihedral_sine(x[0], x[1], x[2], x[3]);
-    w.shape = std::min(w.shape, shape);
-    if (shape <= least) return w;
-    const TetMeasures m = measure_tet(x[0], x[1], x[2], x[3]);
-    w.excess = std::max(w.excess, excess_of(m, s.region, s.exempt));
-    if (w.excess > most) return w;
-  }
-  return w;
-}
 
 // Onto the line of its segment or the plane of its facet.
 Point3 SolidSurgery::constrain(VertexId v, Point3 p) const {
@@ -77,7 +35,7 @@ bool SolidSurgery::smooth(VertexId v) {
   direction_ = {0, 0, 0};
   Point3 normal;
   double reach2 = std::numeric_limits<double>::infinity();
-  for (const StarTet& s : star_tets_) {
+  for (const StarTet& s : star_tets()) {
     for (std::uint32_t i = 0; i < 4; ++i) {
       if ((s.own >> i & 1) == 0 || s.c[i].k != 0) continue;
       for (std::uint32_t j = 0; j < 4; ++j) {
@@ -112,7 +70,7 @@ bool SolidSurgery::smooth(VertexId v) {
     direction_ = (1 / l) * direction_;
   }
 
-  const Worth before = star_worth_at(x, -1, std::numeric_limits<double>::infinity());
+  const Worth before = star_worth();
   Worth best = before;
   Point3 at = x;
   const auto attempt = [&](Point3 p) {
@@ -127,7 +85,7 @@ bool SolidSurgery::smooth(VertexId v) {
   // The mean of the tetrahedra's centroids weighted by volume, then a pattern search.
   Point3 sum;
   double weight = 0;
-  for (const StarTet& s : star_tets_) {
+  for (const StarTet& s : star_tets()) {
     const double volume = six_volumes(s.p[0], s.p[1], s.p[2], s.p[3]);
     sum = sum + 0.25 * volume * (s.p[0] + s.p[1] + s.p[2] + s.p[3]);
     weight += volume;
@@ -148,6 +106,7 @@ bool SolidSurgery::smooth(VertexId v) {
   }
   if (at == x) return false;
   mesh_.move_vertex(v, at);
+  ++edits_;
   touched_.clear();
   for (const TetCopy& c : star_) {
     if (std::find(touched_.begin(), touched_.end(), c.t) != touched_.end()) continue;

@@ -18,10 +18,6 @@ constexpr double kPoorShape = 0.3;
 // Beyond any excess of a radius-edge ratio that is not of a flat tetrahedron.
 constexpr double kOversized = 1e12;
 
-bool is_flat(const TetMeasures& m) {
-  return 6 * m.volume <= kMinRelativeVolume * m.longest2 * std::sqrt(m.longest2);
-}
-
 }  // namespace
 
 SolidSurgery::SolidSurgery(SolidEditor& editor, const SolidCriteria& criteria)
@@ -76,12 +72,10 @@ bool SolidSurgery::exempt(const NewTet& t) const {
 }
 
 bool SolidSurgery::all_within(std::span<const NewTet> tets,
-                              const Moved* moved,
+                              const Moved& moved,
                               double least_shape,
                               double most_excess) const {
-  const auto place = [&](Corner x) {
-    return moved != nullptr && x == moved->corner ? moved->place : mesh_.lift(x);
-  };
+  const auto place = [&](Corner x) { return x == moved.corner ? moved.place : mesh_.lift(x); };
   for (const NewTet& t : tets) {
     const Point3 a = place(t.c[0]), b = place(t.c[1]), c = place(t.c[2]), d = place(t.c[3]);
     if (six_volumes(a, b, c, d) <= 0) return false;

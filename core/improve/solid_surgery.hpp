@@ -7,8 +7,10 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/delaunay/solid_editor.hpp"
@@ -47,12 +49,28 @@ class SolidSurgery {
   // Inserts a vertex for the sake of t's shape where its star's worst is above that of all it
   // replaces.
   [[nodiscard]] bool insert_point(TetId t);
-  // Merges corner `from` of t into corner `to`, there or half-way. `floor`: least shape that will
-  // do where the star's own worst is better; a star worse than that must not get worse.
-  // Bounds::kFree: the bounds may be broken (before refinement, when they are broken anyway).
+  // Merges a vertex into a neighbour, there or half-way. `stays`: the neighbour's copy next to copy
+  // 0 of the vertex. `floor`: least shape that will do where the star's own worst is better; a star
+  // worse than that must not get worse. Bounds::kFree: the bounds may be broken (before refinement,
+  // when they are broken anyway).
   enum class Bounds : std::uint8_t { kKept, kFree };
+  [[nodiscard]] bool merge(VertexId goes,
+                           Corner stays,
+                           double floor,
+                           Bounds bounds = Bounds::kKept);
+  // Corner `from` of t into corner `to`.
   [[nodiscard]] bool collapse(
-      TetId t, std::uint32_t from, std::uint32_t to, double floor, Bounds bounds = Bounds::kKept);
+      TetId t, std::uint32_t from, std::uint32_t to, double floor, Bounds bounds = Bounds::kKept) {
+    const Corner u = mesh_.corner(t, from);
+    return merge(u.v, mesh_.shift(mesh_.corner(t, to), mesh_.subtract(0, u.k)), floor, bounds);
+  }
+  // Copies of other vertices next to copy 0 of a vertex, the nearest first; empty where merging is
+  // out of the question.
+  struct Neighbour {
+    double squared = 0;
+    Corner corner;
+  };
+  [[nodiscard]] std::span<const Neighbour> neighbours(VertexId v);
 
  private:
   struct Worth {
@@ -62,7 +80,7 @@ class SolidSurgery {
   [[nodiscard]] double excess_of(const TetMeasures& m, std::int32_t region, bool exempt) const;
   void include(Worth& w, double shape, double excess) const;
   [[nodiscard]] Worth worth_of(std::span<const TetCopy> tets) const;
-  // With the corner `moved` at `place`, if given.
+  // A corner and where it is to be.
   struct Moved {
     Corner corner;
     Point3 place;
@@ -71,7 +89,7 @@ class SolidSurgery {
   // Whether all have at least this shape and at most this excess; gives up at the first that has
   // not.
   [[nodiscard]] bool all_within(std::span<const NewTet> tets,
-                                const Moved* moved,
+                                const Moved& moved,
                                 double least_shape,
                                 double most_excess) const;
   [[nodiscard]] bool exempt(const NewTet& t) const;
@@ -98,26 +116,56 @@ class SolidSurgery {
                                 double least);
   [[nodiscard]] double triangle_worth(std::uint32_t i, std::uint32_t j, std::uint32_t k) const;
 
-  // Collapses.
+  // Stars: what moves and merges look at.
+  struct StarTet {
+    std::array<Corner, 4> c;
+    std::array<Point3, 4> p;
+    LinkFace link;  // opposite the vertex
+    std::int32_t region;
+    bool exempt;        // from the ratio
+    bool exempt_link;   // whatever vertex stands on the link
+    std::uint8_t own;   // bits of the corners that are copies of the vertex
+    std::uint8_t apex;  // one of them: copy 0
+
+    [[nodiscard]] bool has(Corner x) const {
+      return c[0] == x || c[1] == x || c[2] == x || c[3] == x;
+    }
+  };
+  [[nodiscard]] bool load_star(VertexId v);
+  void load_star_tet(TetCopy c, VertexId v, StarTet& s) const;
+  [[nodiscard]] std::span<const StarTet> star_tets() const {
+    return {star_tets_.data(), star_.size()};
+  }
+  [[nodiscard]] Worth star_worth_at(Point3 p, double least, double most);
+  [[nodiscard]] const Worth& star_worth();
+  // A tetrahedron of the star that would not do is looked at earlier next time.
+  void blame(std::size_t at) { std::swap(star_order_[at], star_order_[at / 2]); }
+
+  // Merges.
   struct Collapse {
     Corner goes, stays;
     SolidVertexKind kind = SolidVertexKind::kFree;
     std::int32_t segment = kNoSegment;
-    Corner behind{-1, 0};  // the segment's other neighbour of `goes`
+    Corner behind{-1, 0};    // the segment's other neighbour of `goes`
+    std::size_t shared = 0;  // tetrahedra with both
   };
-  [[nodiscard]] bool plan_collapse(TetId t, std::uint32_t from, std::uint32_t to, Collapse& plan);
-  void load_collapse_star(VertexId v);
-  [[nodiscard]] bool may_shrink(std::span<const TetCopy> tets, std::size_t left) const;
+  [[nodiscard]] bool plan_collapse(Corner goes, Corner stays, Collapse& plan);
+  [[nodiscard]] bool may_shrink(double volume, double limit, std::size_t left) const;
+  [[nodiscard]] bool link_within(const Collapse& plan,
+                                 Point3 place,
+                                 double least_shape,
+                                 double most_excess);
   [[nodiscard]] bool merge_in_the_middle(const Collapse& plan, double floor);
   [[nodiscard]] double most_excess(const Worth& before) const;
   [[nodiscard]] static double least_shape(double floor, const Worth& before);
   [[nodiscard]] bool do_collapse(const Collapse& plan);
   void refresh(TetId t);
   void note_added();
+  [[nodiscard]] static bool is_flat(const TetMeasures& m) {
+    return 6 * m.volume <= kMinRelativeVolume * m.longest2 * std::sqrt(m.longest2);
+  }
 
   // Moves.
-  [[nodiscard]] bool load_star(VertexId v);
-  [[nodiscard]] Worth star_worth_at(Point3 p, double least, double most) const;
   [[nodiscard]] Point3 constrain(VertexId v, Point3 p) const;
 
   SolidEditor& editor_;
@@ -130,20 +178,21 @@ class SolidSurgery {
 
   Ring ring_;
   std::vector<NewTet> new_tets_;
+  // The star of copy 0 of star_vertex_, as of edit number star_edits_.
   std::vector<TetCopy> star_;
-  VertexId star_vertex_ = -1;  // whose star it is, as of edit number star_edits_
+  std::vector<StarTet> star_tets_;        // beside star_; may be longer
+  std::vector<std::uint8_t> star_order_;  // in which it is looked through
+  VertexId star_vertex_ = -1;
   std::uint64_t star_edits_ = 0;
   std::uint64_t edits_ = 0;
+  bool star_simple_ = false;  // no tetrahedron twice, none with two copies of the vertex
+  bool star_judged_ = false;
+  Worth star_worth_;
+  double star_volume_ = 0;
+  double star_limit_ = 0;  // the largest volume bound there
+  std::vector<Neighbour> neighbours_;
   std::vector<TetCopy> other_star_;
   std::vector<NewTet> stretched_;  // tetrahedra that a merge in the middle moves a corner of
-  struct StarTet {
-    std::array<Corner, 4> c;
-    std::array<Point3, 4> p;
-    std::int32_t region = 0;
-    bool exempt = false;
-    std::uint8_t own = 0;  // bits of the corners that are copies of the vertex
-  };
-  std::vector<StarTet> star_tets_;
   InsertionCavity insertion_;
   Point3 direction_;  // of the segment, or normal of the facet, that holds the vertex
 };

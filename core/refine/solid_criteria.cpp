@@ -44,7 +44,10 @@ SolidCriteria::SolidCriteria(const InitialTetrahedralization& solid, const MeshO
 double SolidCriteria::size_excess2(const TetMeasures& m, std::int32_t region) const {
   const double limit = max_volumes_[static_cast<std::size_t>(region)];
   double worst = m.longest2 / max_edge2_;
-  if (m.volume > limit) worst = std::max(worst, std::pow(m.volume / limit, 2.0 / 3.0));
+  if (m.volume > limit) {
+    const double length = std::cbrt(m.volume / limit);
+    worst = std::max(worst, length * length);
+  }
   return worst;
 }
 

@@ -19,6 +19,11 @@ constexpr double kSizeShare = 0.3;
 constexpr int kMaxPlaneWalk = 1000;
 constexpr int kMaxTurns = 500;
 constexpr std::uint64_t kCheckEvery = 256;
+// Of the queue's key.
+constexpr double kStepsAnOctave = 16;
+// A mesh that has grown by this factor, to this size at least, is put in order again.
+constexpr std::size_t kGrowth = 3;
+constexpr std::size_t kLeastToOrder = 5'000;
 // A subfacet or subsegment is encroached on by points within this share of its diametral sphere's
 // radius. Less than 1 makes smaller meshes; the improvement removes flat tetrahedra that result.
 constexpr double kEncroachment2 = 0.95 * 0.95;
@@ -43,9 +48,11 @@ void SolidRefiner::enqueue(TetId t) {
   const double ratio = criteria_.excess(m, tet.region, false);
   if (ratio <= 1) return;
   if (sized <= 1 && criteria_.exemption(mesh_, tet) != SolidExemption::kNone) return;
-  // Shape before size, the worst first.
+  // Shape before size, the worst first, but in steps: within one, tetrahedra follow each other as
+  // they lie in memory.
   const double key = sized > 1 ? sized : 1e10 * ratio;
-  queue_.push({static_cast<float>(std::min(key, 1e30)), t, tet.version});
+  const auto step = static_cast<std::int32_t>(kStepsAnOctave * std::log2(std::min(key, 1e30)));
+  queue_.push({step, t, tet.version});
 }
 
 void SolidRefiner::enqueue_added() {
@@ -56,11 +63,17 @@ bool SolidRefiner::still_bad(const Entry& e) const {
   return mesh_.alive(e.t) && mesh_.tet(e.t).version == e.version;
 }
 
-Result<void> SolidRefiner::run() {
-  depth_.resize(mesh_.vertex_slots(), 0);
+void SolidRefiner::enqueue_all() {
+  queue_ = {};
   for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
     if (mesh_.alive(t)) enqueue(t);
   }
+}
+
+Result<void> SolidRefiner::run() {
+  depth_.resize(mesh_.vertex_slots(), 0);
+  enqueue_all();
+  std::size_t ordered = std::max(mesh_.tet_count(), kLeastToOrder);
   shape_budget_ = kLeastShapeBudget + kShapeBudgetABadTet * queue_.size();
   const double initial = static_cast<double>(queue_.size()) + 1;
   for (std::uint64_t step = 0; !queue_.empty(); ++step) {
@@ -68,6 +81,11 @@ Result<void> SolidRefiner::run() {
       if (auto ok = context_.check(mesh_.tet_count()); !ok) return ok;
       if (mesh_.tet_count() > most_tets_) {
         return fail(ErrorCode::kElementLimit, "more tetrahedra than are wanted");
+      }
+      if (mesh_.tet_count() > kGrowth * ordered) {
+        editor_.compact();
+        ordered = mesh_.tet_count();
+        enqueue_all();
       }
       const double left = static_cast<double>(queue_.size());
       context_.report(Phase::kRefine, 0.15 + 0.45 * (1 - left / std::max(initial, left)),

@@ -74,7 +74,7 @@ class SolidRefiner {
     std::uint8_t depth = 0;
   };
   struct Entry {
-    float key;
+    std::int32_t key;
     TetId t;
     std::uint32_t version;
     friend bool operator<(const Entry& a, const Entry& b) {
@@ -89,6 +89,7 @@ class SolidRefiner {
 
   void enqueue(TetId t);
   void enqueue_added();
+  void enqueue_all();
   [[nodiscard]] bool still_bad(const Entry& e) const;
   [[nodiscard]] Cause cause_of(TetId t) const;
   [[nodiscard]] Outcome treat(TetId t);

@@ -64,6 +64,50 @@ struct TetMeasures {
   return std::isfinite(sine) ? sine : -1;
 }
 
+// A face with what the measures of all tetrahedra on it share: the face that stays while a vertex
+// moves. Counter-clockwise seen from outside, so that (p, a, b, c) is positive.
+struct LinkFace {
+  Point3 a, b, c;
+  double normal2 = 0;  // (twice the area) squared
+  double ab2 = 0, bc2 = 0, ca2 = 0;
+
+  LinkFace() = default;
+  LinkFace(Point3 a_, Point3 b_, Point3 c_) : a(a_), b(b_), c(c_) {
+    const Point3 n = cross(b - a, c - a);
+    normal2 = dot(n, n);
+    ab2 = squared_distance(a, b);
+    bc2 = squared_distance(b, c);
+    ca2 = squared_distance(c, a);
+  }
+};
+
+// The tetrahedron (p, face): as min_dihedral_sine and measure_tet (without the centre), up to
+// rounding, in one go. The measures are left out where the sine is not above `least`.
+struct LinkTet {
+  double sine = -1;
+  TetMeasures measures;
+
+  LinkTet(Point3 p, const LinkFace& f, double least) {
+    const Point3 u = f.a - p, v = f.b - p, w = f.c - p;
+    const Point3 vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
+    const double det = dot(u, vw);
+    const double uu = dot(u, u), vv = dot(v, v), ww = dot(w, w);
+    const double s1 = dot(vw, vw), s2 = dot(wu, wu), s3 = dot(uv, uv);
+    const double worst2 =
+        std::min({uu / (s2 * s3), vv / (s1 * s3), ww / (s1 * s2), f.ab2 / (f.normal2 * s3),
+                  f.bc2 / (f.normal2 * s1), f.ca2 / (f.normal2 * s2)});
+    sine = det * std::sqrt(worst2);
+    if (!std::isfinite(sine)) sine = -1;
+    if (!(sine > least)) return;
+    measures.volume = det / 6;
+    measures.shortest2 = std::min({uu, vv, ww, f.ab2, f.bc2, f.ca2});
+    measures.longest2 = std::max({uu, vv, ww, f.ab2, f.bc2, f.ca2});
+    const Point3 r = uu * vw + vv * wu + ww * uv;
+    measures.radius2 =
+        det != 0 ? 0.25 * dot(r, r) / (det * det) : std::numeric_limits<double>::infinity();
+  }
+};
+
 // Circumcentre of a triangle in space; far away for a degenerate one.
 [[nodiscard]] inline Point3 triangle_circumcentre(Point3 a, Point3 b, Point3 c) {
   const Point3 u = b - a, v = c - a, n = cross(u, v);

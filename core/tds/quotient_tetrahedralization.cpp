@@ -1,12 +1,18 @@
 #include "core/tds/quotient_tetrahedralization.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <utility>
 
 #include "core/base/assert.hpp"
+#include "core/tds/spatial_order.hpp"
 
 namespace symcell {
 namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
 
 std::uint64_t hash(const FaceKey& key) {
   std::uint64_t x = key.high + 0x9e3779b97f4a7c15ULL * (key.low + 1);
@@ -324,22 +330,49 @@ std::uint32_t QuotientTetrahedralization::new_epoch() {
   return epoch_;
 }
 
-void QuotientTetrahedralization::compact_tets() {
-  std::vector<TetId> order;
-  order.reserve(live_tets_);
-  const std::uint32_t epoch = new_epoch();
-  for (TetId seed = 0; seed < tets_.size(); ++seed) {
-    if (!alive(seed) || tets_[seed].stamp == epoch) continue;
-    tets_[seed].stamp = epoch;
-    order.push_back(seed);
-    for (std::size_t at = order.size() - 1; at < order.size(); ++at) {
-      for (const HalfFace g : tets_[order[at]].nb) {
-        if (g == kNoHalfFace || tets_[tet_of(g)].stamp == epoch) continue;
-        tets_[tet_of(g)].stamp = epoch;
-        order.push_back(tet_of(g));
-      }
+// By the place of centroids along a space-filling curve, all in one sector whatever their frames.
+std::vector<TetId> QuotientTetrahedralization::spatial_order() const {
+  struct Place {
+    std::uint64_t key;
+    TetId t;
+  };
+  std::vector<Point3> centres(tets_.size());
+  Point3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
+  const double sector = 2 * std::numbers::pi / fold();
+  for (TetId t = 0; t < tets_.size(); ++t) {
+    if (!alive(t)) continue;
+    Point3 c;
+    for (std::uint32_t i = 0; i < 4; ++i) c = c + 0.25 * corner_point(t, i);
+    if (fold() > 1) {
+      const auto turns = static_cast<std::int32_t>(std::floor(std::atan2(c.y, c.x) / sector));
+      c = rotations_.rotate(c, rotations_.reduce(-turns));
     }
+    centres[t] = c;
+    low = {std::min(low.x, c.x), std::min(low.y, c.y), std::min(low.z, c.z)};
+    high = {std::max(high.x, c.x), std::max(high.y, c.y), std::max(high.z, c.z)};
   }
+  const Point3 extent = high - low;
+  const double size = std::max({extent.x, extent.y, extent.z});
+  const double scale = size > 0 ? (1U << kHilbertBits) / size : 0;
+  const auto cell = [&](double x) { return static_cast<std::uint32_t>(std::max(0.0, x * scale)); };
+  std::vector<Place> places;
+  places.reserve(live_tets_);
+  for (TetId t = 0; t < tets_.size(); ++t) {
+    if (!alive(t)) continue;
+    const Point3 c = centres[t] - low;
+    places.push_back({hilbert_place(cell(c.x), cell(c.y), cell(c.z)), t});
+  }
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return a.key != b.key ? a.key < b.key : a.t < b.t;
+  });
+  std::vector<TetId> order;
+  order.reserve(places.size());
+  for (const Place& p : places) order.push_back(p.t);
+  return order;
+}
+
+void QuotientTetrahedralization::compact_tets() {
+  const std::vector<TetId> order = spatial_order();
   std::vector<TetId> place(tets_.size(), 0);
   for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<TetId>(i);
   std::vector<Tet> tets;

@@ -192,7 +192,7 @@ class QuotientTetrahedralization {
   // Next visit mark for Tet::stamp.
   std::uint32_t new_epoch();
 
-  // Rewrites the slots of tetrahedra in breadth-first order, without gaps.
+  // Rewrites the slots of tetrahedra without gaps, near ones near each other.
   void compact_tets();
   // Those of vertices as well. Old vertex id -> new one (-1: was deleted).
   std::vector<VertexId> compact();
@@ -228,6 +228,7 @@ class QuotientTetrahedralization {
                                  Outline outline);
   [[nodiscard]] std::uint64_t outline_hash(Corner a, Corner b, Corner c, std::int32_t facet) const;
   TetId take_slot();
+  [[nodiscard]] std::vector<TetId> spatial_order() const;
   void link(HalfFace h, HalfFace g, std::int32_t off);
 
   RotationTable rotations_;
