@@ -43,12 +43,8 @@ bool has(const CavityFace& f, Corner x) {
 double InsertionCavity::worth(Point3 p, const CavityFace& f, double least) const {
   const double shape = min_dihedral_sine(p, f.points[0], f.points[1], f.points[2]);
   if (shape <= least || shape <= 0) return shape;
-  bool exempt = false;
-  for (const Corner& x : f.corners) {
-    exempt = exempt || criteria_.exemption(mesh_, x.v) != SolidExemption::kNone;
-  }
   const TetMeasures m = measure_tet(p, f.points[0], f.points[1], f.points[2]);
-  const double excess = criteria_.excess(m, f.region, exempt);
+  const double excess = criteria_.excess(m, f.region, false);
   return excess > 1 ? shape * kBrokenShare / excess : shape;
 }
 

@@ -55,19 +55,13 @@ bool SolidSurgery::may_shrink(double volume, double limit, std::size_t left) con
 }
 
 // Whether what is left of the star, drawn to a place for the vertex that stays, is good enough.
-bool SolidSurgery::link_within(const Collapse& plan,
-                               Point3 place,
-                               double least_shape,
-                               double most_excess) {
+bool SolidSurgery::link_within(const Collapse& plan, Point3 place, const Worth& limits) {
   const bool exempt = criteria_.exemption(mesh_, plan.stays.v) != SolidExemption::kNone;
   for (std::size_t n = 0; n < star_order_.size(); ++n) {
     const StarTet& s = star_tets_[star_order_[n]];
     if (s.has(plan.stays)) continue;
-    const LinkTet t(place, s.link, least_shape);
-    if (t.sine > least_shape && !is_flat(t.measures) &&
-        excess_of(t.measures, s.region, exempt || s.exempt_link) <= most_excess) {
-      continue;
-    }
+    const LinkTet t(place, s.link, limits.shape);
+    if (within(t, s.region, exempt || s.exempt_link, limits)) continue;
     blame(n);
     return false;
   }
@@ -106,20 +100,16 @@ bool SolidSurgery::merge(VertexId goes, Corner stays, double floor, Bounds bound
   const std::size_t left = star_.size() - plan.shared;
   const bool kept = bounds == Bounds::kKept;
   if (kept && !may_shrink(star_volume_, star_limit_, left)) return merge_in_the_middle(plan, floor);
-  const Worth& before = star_worth();
-  const double most = kept ? most_excess(before) : std::numeric_limits<double>::infinity();
-  if (link_within(plan, mesh_.lift(stays), least_shape(floor, before), most) && do_collapse(plan)) {
-    return true;
-  }
+  Worth limits = merge_limits(floor, star_worth());
+  if (!kept) limits.excess = limits.exempt = std::numeric_limits<double>::infinity();
+  if (link_within(plan, mesh_.lift(stays), limits) && do_collapse(plan)) return true;
   return kept && merge_in_the_middle(plan, floor);
 }
 
-double SolidSurgery::most_excess(const Worth& before) const {
-  return std::max(allowed_excess_, before.excess * (1 - kExcessGain));
-}
-
-double SolidSurgery::least_shape(double floor, const Worth& before) {
-  return std::max(kLeastShape, std::min(floor, before.shape * (1 + kGain)));
+SolidSurgery::Worth SolidSurgery::merge_limits(double floor, const Worth& before) const {
+  return {std::max(kLeastShape, std::min(floor, before.shape * (1 + kGain))),
+          std::max(allowed_excess_, before.excess * (1 - kExcessGain)),
+          std::max(allowed_excess_, before.exempt * (1 - kExcessGain))};
 }
 
 bool SolidSurgery::merge_in_the_middle(const Collapse& plan, double floor) {
@@ -136,9 +126,7 @@ bool SolidSurgery::merge_in_the_middle(const Collapse& plan, double floor) {
   // Half of what is to be looked at is at hand, and mostly tells.
   const Moved moved{plan.stays, 0.5 * (mesh_.point(plan.goes.v) + mesh_.lift(plan.stays))};
   Worth before = star_worth();
-  if (!link_within(plan, moved.place, least_shape(floor, before), most_excess(before))) {
-    return false;
-  }
+  if (!link_within(plan, moved.place, merge_limits(floor, before))) return false;
   other_star_.clear();
   mesh_.star(v, other_star_);
   if (other_star_.size() > kMaxStar) return false;
@@ -163,13 +151,11 @@ bool SolidSurgery::merge_in_the_middle(const Collapse& plan, double floor) {
     const TetMeasures& m = editor_.measures(c.t);
     volume += m.volume;
     limit = std::max(limit, criteria_.max_volume(n.region));
-    include(before, shapes_[c.t], excess_of(m, n.region, exempt(n)));
+    include(before, shapes_[c.t], m, n.region, exempt(n));
   }
   const std::size_t left = star_.size() - plan.shared + stretched_.size();
   if (!may_shrink(volume, limit, left)) return false;
-  if (!all_within(stretched_, moved, least_shape(floor, before), most_excess(before))) {
-    return false;
-  }
+  if (!all_within(stretched_, moved, merge_limits(floor, before))) return false;
   if (!do_collapse(plan)) return false;
   mesh_.move_vertex(v, mesh_.rotations().rotate(moved.place, mesh_.subtract(0, plan.stays.k)));
   ++edits_;

@@ -7,6 +7,8 @@
 namespace symcell {
 namespace {
 
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
 // Stars without a sine below this (25 degrees) and within all bounds are left to the mean:
 // searching on takes a third of the time and makes meshes no smaller.
 constexpr double kGoodShape = 0.42;
@@ -75,9 +77,10 @@ bool SolidSurgery::smooth(VertexId v) {
   Point3 at = x;
   const auto attempt = [&](Point3 p) {
     p = constrain(v, p);
-    const double least = best.excess > 1 ? 0 : best.shape;
-    const Worth w = star_worth_at(p, least, std::max(1.0, best.excess));
-    if (w.shape <= least || !better(w, best)) return false;
+    const Worth limits{is_broken(best) ? 0 : best.shape, std::max(1.0, best.excess),
+                       best.excess > 1 ? kFar : std::max(1.0, best.exempt)};
+    const Worth w = star_worth_at(p, limits);
+    if (w.shape <= limits.shape || !better(w, best)) return false;
     best = w;
     at = p;
     return true;
@@ -95,7 +98,7 @@ bool SolidSurgery::smooth(VertexId v) {
     if (!attempt(mean)) static_cast<void>(attempt(0.5 * (x + mean)));
   }
   const double reach = std::sqrt(reach2);
-  const bool search = best.excess > 1 || best.shape < kGoodShape;
+  const bool search = is_broken(best) || best.shape < kGoodShape;
   constexpr std::array<Point3, 7> kWays = {
       {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {0.577, 0.577, 0.577}}};
   for (const double step : kSteps) {

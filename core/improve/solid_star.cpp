@@ -64,15 +64,15 @@ bool SolidSurgery::load_star(VertexId v) {
 const SolidSurgery::Worth& SolidSurgery::star_worth() {
   if (!star_judged_) {
     constexpr double kAny = std::numeric_limits<double>::infinity();
-    star_worth_ = star_worth_at(mesh_.point(star_vertex_), -kAny, kAny);
+    star_worth_ = star_worth_at(mesh_.point(star_vertex_), {-kAny, kAny, kAny});
     star_judged_ = true;
   }
   return star_worth_;
 }
 
 // Worst shape and excess of the star with the vertex at p; gives up as soon as a shape is at most
-// `least` or an excess above `most`.
-SolidSurgery::Worth SolidSurgery::star_worth_at(Point3 p, double least, double most) {
+// the limits' or an excess above.
+SolidSurgery::Worth SolidSurgery::star_worth_at(Point3 p, const Worth& limits) {
   Worth w;
   for (std::size_t n = 0; n < star_order_.size(); ++n) {
     const StarTet& s = star_tets_[star_order_[n]];
@@ -88,11 +88,12 @@ SolidSurgery::Worth SolidSurgery::star_worth_at(Point3 p, double least, double m
       turned = LinkFace(x[f[0]], x[f[1]], x[f[2]]);
       link = &turned;
     }
-    const LinkTet t(p, *link, least);
-    w.shape = std::min(w.shape, t.sine);
-    if (t.sine > least) {
-      w.excess = std::max(w.excess, excess_of(t.measures, s.region, s.exempt));
-      if (w.excess <= most) continue;
+    const LinkTet t(p, *link, limits.shape);
+    if (t.sine > limits.shape) {
+      include(w, t.sine, t.measures, s.region, s.exempt);
+      if (w.excess <= limits.excess && w.exempt <= limits.exempt) continue;
+    } else {
+      w.shape = std::min(w.shape, t.sine);
     }
     blame(n);
     return w;

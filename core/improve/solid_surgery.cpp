@@ -15,6 +15,7 @@ constexpr double kInsertionGain = 1.15;
 // While a bound is broken, shapes may get worse, but not below this sine.
 constexpr double kPoorShape = 0.3;
 
+constexpr double kFar = std::numeric_limits<double>::infinity();
 // Beyond any excess of a radius-edge ratio that is not of a flat tetrahedron.
 constexpr double kOversized = 1e12;
 
@@ -37,9 +38,20 @@ double SolidSurgery::excess_of(const TetMeasures& m, std::int32_t region, bool e
   return sized > 1 ? kOversized * sized : excess;
 }
 
-void SolidSurgery::include(Worth& w, double shape, double excess) const {
+void SolidSurgery::include(
+    Worth& w, double shape, const TetMeasures& m, std::int32_t region, bool exempt) const {
   w.shape = std::min(w.shape, shape);
-  w.excess = std::max(w.excess, excess);
+  w.excess = std::max(w.excess, excess_of(m, region, exempt));
+  if (exempt) w.exempt = std::max(w.exempt, criteria_.ratio_excess(m));
+}
+
+bool SolidSurgery::within(const LinkTet& t,
+                          std::int32_t region,
+                          bool exempt,
+                          const Worth& limits) const {
+  return t.sine > limits.shape && !is_flat(t.measures) &&
+         excess_of(t.measures, region, exempt) <= limits.excess &&
+         (!exempt || criteria_.ratio_excess(t.measures) <= limits.exempt);
 }
 
 SolidSurgery::Worth SolidSurgery::worth_of(std::span<const TetCopy> tets) const {
@@ -47,7 +59,7 @@ SolidSurgery::Worth SolidSurgery::worth_of(std::span<const TetCopy> tets) const 
   for (const TetCopy& c : tets) {
     const Tet& t = mesh_.tet(c.t);
     const bool exempt = criteria_.exemption(mesh_, t) != SolidExemption::kNone;
-    include(w, shapes_[c.t], excess_of(editor_.measures(c.t), t.region, exempt));
+    include(w, shapes_[c.t], editor_.measures(c.t), t.region, exempt);
   }
   return w;
 }
@@ -58,8 +70,8 @@ SolidSurgery::Worth SolidSurgery::worth_of(std::span<const NewTet> tets) const {
     const Point3 a = mesh_.lift(t.c[0]), b = mesh_.lift(t.c[1]), c = mesh_.lift(t.c[2]),
                  d = mesh_.lift(t.c[3]);
     const TetMeasures m = measure_tet(a, b, c, d);
-    if (is_flat(m)) return {-1, std::numeric_limits<double>::infinity()};
-    include(w, min_dihedral_sine(a, b, c, d), excess_of(m, t.region, exempt(t)));
+    if (is_flat(m)) return {-1, kFar, kFar};
+    include(w, min_dihedral_sine(a, b, c, d), m, t.region, exempt(t));
   }
   return w;
 }
@@ -73,28 +85,30 @@ bool SolidSurgery::exempt(const NewTet& t) const {
 
 bool SolidSurgery::all_within(std::span<const NewTet> tets,
                               const Moved& moved,
-                              double least_shape,
-                              double most_excess) const {
+                              const Worth& limits) const {
   const auto place = [&](Corner x) { return x == moved.corner ? moved.place : mesh_.lift(x); };
   for (const NewTet& t : tets) {
-    const Point3 a = place(t.c[0]), b = place(t.c[1]), c = place(t.c[2]), d = place(t.c[3]);
-    if (six_volumes(a, b, c, d) <= 0) return false;
-    const TetMeasures m = measure_tet(a, b, c, d);
-    if (is_flat(m) || excess_of(m, t.region, exempt(t)) > most_excess) return false;
-    if (min_dihedral_sine(a, b, c, d) < least_shape) return false;
+    const auto& f = kFaceCorners[0];
+    const LinkFace link(place(t.c[f[0]]), place(t.c[f[1]]), place(t.c[f[2]]));
+    if (!within(LinkTet(place(t.c[0]), link, limits.shape), t.region, exempt(t), limits)) {
+      return false;
+    }
   }
   return true;
 }
 
+// Bounds come before shapes, those that must be kept before those that the input excuses from.
 bool SolidSurgery::better(const Worth& now, const Worth& before) {
   if (now.shape <= 0) return false;
-  if (before.excess > 1) {
-    if (now.excess > before.excess * (1 - kExcessGain)) {
-      return now.excess <= before.excess && now.shape > before.shape * (1 + kGain);
-    }
+  const bool shapelier = now.shape > before.shape * (1 + kGain);
+  const auto less = [&](double excess, double old) {
+    if (excess > old * (1 - kExcessGain)) return excess <= old && shapelier;
     return now.shape > std::min(before.shape, kPoorShape);
-  }
-  return now.excess <= 1 && now.shape > before.shape * (1 + kGain);
+  };
+  if (before.excess > 1) return less(now.excess, before.excess);
+  if (now.excess > 1) return false;
+  if (before.exempt > 1) return less(now.exempt, before.exempt);
+  return now.exempt <= 1 && shapelier;
 }
 
 bool SolidSurgery::apply(std::span<const TetCopy> removed,
@@ -232,7 +246,7 @@ bool SolidSurgery::remove_edge(TetId t, std::uint32_t i, std::uint32_t j) {
   if (!load_ring(t, i, j)) return false;
   const Ring& r = ring_;
   const Worth before = worth_of(r.tets);
-  const double least = before.excess > 1 ? 0 : before.shape;
+  const double least = is_broken(before) ? 0 : before.shape;
   // Subfacets at the edge: none, or two of one facet.
   const auto m = static_cast<std::uint32_t>(r.corners.size());
   std::array<std::uint32_t, 2> at{};
@@ -299,7 +313,7 @@ bool SolidSurgery::remove_face(TetId t, std::uint32_t i) {
   for (std::size_t j = 0; j < 3; ++j) {
     const Corner p = f[j], q = f[(j + 1) % 3];
     const double shape = min_dihedral_sine(pd, mesh_.lift(p), mesh_.lift(q), pe);
-    if (shape <= (before.excess > 1 ? 0 : before.shape)) return false;
+    if (shape <= (is_broken(before) ? 0 : before.shape)) return false;
     NewTet n;
     n.c[0] = d;
     n.c[1] = p;
@@ -326,8 +340,8 @@ bool SolidSurgery::insert_point(TetId t) {
     for (const Corner& x : f.corners) {
       exempt = exempt || criteria_.exemption(mesh_, x.v) != SolidExemption::kNone;
     }
-    include(now, min_dihedral_sine(cavity.point, f.points[0], f.points[1], f.points[2]),
-            excess_of(m, f.region, exempt));
+    include(now, min_dihedral_sine(cavity.point, f.points[0], f.points[1], f.points[2]), m,
+            f.region, exempt);
   }
   if (!better(now, before)) return false;
   if (editor_.insert(cavity, SolidVertexKind::kFree, -1, false) == SolidEditor::kNoVertex) {

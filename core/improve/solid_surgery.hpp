@@ -75,10 +75,12 @@ class SolidSurgery {
  private:
   struct Worth {
     double shape = 2;   // the smallest
-    double excess = 0;  // the largest
+    double excess = 0;  // the largest, of bounds that must be kept
+    double exempt = 0;  // the largest of the ratio where the input excuses from it
   };
   [[nodiscard]] double excess_of(const TetMeasures& m, std::int32_t region, bool exempt) const;
-  void include(Worth& w, double shape, double excess) const;
+  void include(
+      Worth& w, double shape, const TetMeasures& m, std::int32_t region, bool exempt) const;
   [[nodiscard]] Worth worth_of(std::span<const TetCopy> tets) const;
   // A corner and where it is to be.
   struct Moved {
@@ -86,14 +88,18 @@ class SolidSurgery {
     Point3 place;
   };
   [[nodiscard]] Worth worth_of(std::span<const NewTet> tets) const;
-  // Whether all have at least this shape and at most this excess; gives up at the first that has
+  // Whether all have a shape above the limits' and no more excess; gives up at the first that has
   // not.
   [[nodiscard]] bool all_within(std::span<const NewTet> tets,
                                 const Moved& moved,
-                                double least_shape,
-                                double most_excess) const;
+                                const Worth& limits) const;
+  [[nodiscard]] bool within(const LinkTet& t,
+                            std::int32_t region,
+                            bool exempt,
+                            const Worth& limits) const;
   [[nodiscard]] bool exempt(const NewTet& t) const;
   [[nodiscard]] static bool better(const Worth& now, const Worth& before);
+  [[nodiscard]] static bool is_broken(const Worth& w) { return w.excess > 1 || w.exempt > 1; }
   using Outline = QuotientTetrahedralization::Outline;
   [[nodiscard]] bool apply(std::span<const TetCopy> removed,
                            std::span<const NewTet> added,
@@ -136,7 +142,7 @@ class SolidSurgery {
   [[nodiscard]] std::span<const StarTet> star_tets() const {
     return {star_tets_.data(), star_.size()};
   }
-  [[nodiscard]] Worth star_worth_at(Point3 p, double least, double most);
+  [[nodiscard]] Worth star_worth_at(Point3 p, const Worth& limits);
   [[nodiscard]] const Worth& star_worth();
   // A tetrahedron of the star that would not do is looked at earlier next time.
   void blame(std::size_t at) { std::swap(star_order_[at], star_order_[at / 2]); }
@@ -151,13 +157,9 @@ class SolidSurgery {
   };
   [[nodiscard]] bool plan_collapse(Corner goes, Corner stays, Collapse& plan);
   [[nodiscard]] bool may_shrink(double volume, double limit, std::size_t left) const;
-  [[nodiscard]] bool link_within(const Collapse& plan,
-                                 Point3 place,
-                                 double least_shape,
-                                 double most_excess);
+  [[nodiscard]] bool link_within(const Collapse& plan, Point3 place, const Worth& limits);
   [[nodiscard]] bool merge_in_the_middle(const Collapse& plan, double floor);
-  [[nodiscard]] double most_excess(const Worth& before) const;
-  [[nodiscard]] static double least_shape(double floor, const Worth& before);
+  [[nodiscard]] Worth merge_limits(double floor, const Worth& before) const;
   [[nodiscard]] bool do_collapse(const Collapse& plan);
   void refresh(TetId t);
   void note_added();

@@ -32,6 +32,10 @@ class SolidCriteria {
     const double ratio = exempt ? 0 : m.ratio2() * inverse_ratio2_;
     return ratio > sized ? ratio : sized;
   }
+  // Of the ratio alone.
+  [[nodiscard]] double ratio_excess(const TetMeasures& m) const {
+    return m.ratio2() * inverse_ratio2_;
+  }
   // Squared, of volume and edge alone (volumes to the power 2/3).
   [[nodiscard]] double size_excess2(const TetMeasures& m, std::int32_t region) const;
   [[nodiscard]] bool is_bad(const TetMeasures& m, std::int32_t region, bool exempt) const {

@@ -47,10 +47,10 @@ void SolidRefiner::enqueue(TetId t) {
   const double sized = criteria_.size_excess2(m, tet.region);
   const double ratio = criteria_.excess(m, tet.region, false);
   if (ratio <= 1) return;
-  if (sized <= 1 && criteria_.exemption(mesh_, tet) != SolidExemption::kNone) return;
+  const bool exempt = sized <= 1 && criteria_.exemption(mesh_, tet) != SolidExemption::kNone;
   // Shape before size, the worst first, but in steps: within one, tetrahedra follow each other as
   // they lie in memory.
-  const double key = sized > 1 ? sized : 1e10 * ratio;
+  const double key = sized > 1 ? sized : (exempt ? 1e-10 : 1e10) * ratio;
   const auto step = static_cast<std::int32_t>(kStepsAnOctave * std::log2(std::min(key, 1e30)));
   queue_.push({step, t, tet.version});
 }
@@ -112,6 +112,7 @@ SolidRefiner::Cause SolidRefiner::cause_of(TetId t) const {
   Cause cause;
   cause.shortest = std::sqrt(m.shortest2);
   cause.size = criteria_.size_excess2(m, tet.region) > 1;
+  cause.exempt = !cause.size && criteria_.exemption(mesh_, tet) != SolidExemption::kNone;
   cause.least = cause.size ? kSizeShare * std::cbrt(std::abs(m.volume)) : 0;
   // The ends of the shortest edge.
   double best = std::numeric_limits<double>::infinity();
@@ -139,7 +140,7 @@ bool SolidRefiner::allowed(const Cavity& cavity, const Cause& cause, double shar
   if (cause.size) return nearest >= cause.least;
   if (shape_budget_ == 0 || mesh_.tet_count() > most_shaped_) return false;
   if (nearest < share * cause.shortest) return false;
-  return nearest >= cause.shortest || cause.depth < max_depth_;
+  return nearest >= cause.shortest || (cause.depth < max_depth_ && !cause.exempt);
 }
 
 SolidRefiner::Outcome SolidRefiner::insert(const Cavity& cavity,

@@ -22,6 +22,7 @@ class SolidSurgeryFold : public testing::TestWithParam<std::int32_t> {
   struct Worth {
     double shape = 2;
     double excess = 0;
+    double exempt = 0;  // of the ratio where it need not be kept
   };
   struct State {
     std::uint32_t version = 0;
@@ -61,7 +62,8 @@ class SolidSurgeryFold : public testing::TestWithParam<std::int32_t> {
       all[t] = {
           mesh().tet(t).version,
           true,
-          {surgery.shape(t), criteria.excess(editor.measures(t), mesh().tet(t).region, exempt)}};
+          {surgery.shape(t), criteria.excess(editor.measures(t), mesh().tet(t).region, exempt),
+           exempt ? criteria.ratio_excess(editor.measures(t)) : 0}};
     }
     return all;
   }
@@ -88,10 +90,12 @@ class SolidSurgeryFold : public testing::TestWithParam<std::int32_t> {
           if (was) {
             old.shape = std::min(old.shape, before[i].worth.shape);
             old.excess = std::max(old.excess, before[i].worth.excess);
+            old.exempt = std::max(old.exempt, before[i].worth.exempt);
           }
           if (!after[i].alive) continue;
           now.shape = std::min(now.shape, after[i].worth.shape);
           now.excess = std::max(now.excess, after[i].worth.excess);
+          now.exempt = std::max(now.exempt, after[i].worth.exempt);
           // What the surgery keeps is so.
           const auto x = editor.points({static_cast<TetId>(i), 0});
           EXPECT_EQ(after[i].worth.shape, min_dihedral_sine(x[0], x[1], x[2], x[3]));
@@ -101,8 +105,11 @@ class SolidSurgeryFold : public testing::TestWithParam<std::int32_t> {
         EXPECT_LE(now.excess, std::max(1.0, old.excess));
         if (floor >= 0) {
           EXPECT_GE(now.shape, std::min(floor, old.shape));
-        } else if (old.excess <= 1) {
+        } else if (old.excess <= 1 && old.exempt <= 1) {
           EXPECT_GT(now.shape, old.shape);
+          EXPECT_LE(now.exempt, 1);
+        } else if (old.excess <= 1) {
+          EXPECT_TRUE(now.exempt < old.exempt || now.shape > old.shape);
         } else {
           EXPECT_TRUE(now.excess < old.excess || now.shape > old.shape);
         }
