@@ -78,12 +78,13 @@ bool DeviationGuard::lies_on_old_surface(const PlannedTriangle& triangle) const 
   const Point3 centre = (1.0 / 3) * (a + b + c);
   const auto hit = tree_.nearest(centre, most_);
   if (hit.triangle < 0 || dot(normals_[hit.triangle], n) < facing) return false;
+  std::int32_t last = -1;
   for (int i = 0; i <= kGridSteps; ++i) {
     for (int j = 0; i + j <= kGridSteps; ++j) {
       const int k = kGridSteps - i - j;
       if (i == kGridSteps || j == kGridSteps || k == kGridSteps) continue;
       const Point3 p = (1.0 / kGridSteps) * (i * a + j * b + static_cast<double>(k) * c);
-      if (!tree_.within(p, most_)) return false;
+      if (!tree_.within(p, most_, last)) return false;
     }
   }
   return true;

@@ -19,6 +19,8 @@ class DeviationGuard {
   DeviationGuard(const QuotientSurface& surface, double most);
 
   [[nodiscard]] double most() const { return most_; }
+  // From now on more deviation is allowed.
+  void relax(double factor) { most_ *= factor; }
 
   // Whether triangles `gone` may become `planned` (some of the same ids); then `answers` are the
   // planned triangle (index) that each sample of the gone ones goes to.

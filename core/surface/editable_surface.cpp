@@ -271,10 +271,10 @@ std::optional<FlipPlan> EditableSurface::plan_flip(std::int32_t t, std::int32_t 
   const OrbitVertex a = c[side], b = c[next], p = c[apex], q = d[other_apex];
   if (p.orbit == q.orbit) return std::nullopt;
   if (along_one_cut(p, q)) return std::nullopt;
-  const Neighbour wanted{q.orbit, exponent_between(p, q)};
-  const std::vector<Neighbour> at_p = ring(p.orbit);
-  for (const Neighbour& n : at_p) {
-    if (n.orbit == wanted.orbit) return std::nullopt;
+  for (const std::int32_t o : stars_[p.orbit]) {
+    for (const OrbitVertex& v : s_->triangles[o]) {
+      if (v.orbit == q.orbit) return std::nullopt;
+    }
   }
   FlipPlan plan;
   plan.changed[0] = {t, {a, q, p}, {point(a), point(q), point(p)}};

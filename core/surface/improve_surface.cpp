@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <numbers>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "core/surface/constrained_fit.hpp"
@@ -35,6 +38,12 @@ constexpr double kBetter = 1.02;
 constexpr double kDelaunayGain = 0.02;
 // A fit may lower it to this share.
 constexpr double kFitShape = 0.95;
+// In a corner narrower than this (as for the default bound on the ratio, asin(1 / 2B)) no good
+// tetrahedron fits: where such are left, the surface may deviate more by this factor.
+constexpr double kNarrowCorner = 20.71 * std::numbers::pi / 180;
+constexpr double kNarrowRelief = 2;
+// But may not get flatter triangles than this for it.
+constexpr double kOpenedShape = 0.2;
 // Rounding that a vertex may be off the planes of its patches, of the extent.
 constexpr double kPlaneRounding = 1e-11;
 constexpr std::size_t kCheckEvery = 256;
@@ -97,11 +106,13 @@ class Improver {
     auto ok = steps({&Improver::fit_pass, &Improver::flip_pass, &Improver::fit_pass});
     if (!ok) return ok;
     settling_ = true;
+    begun_ = {};  // flips are judged in another way now
     for (int pass = 0; pass < kMostPasses; ++pass) {
       auto flipped = flip_pass();
       if (!flipped) return tl::unexpected<Error>(flipped.error());
       if (*flipped == 0) break;
     }
+    if (ok = open_narrow_corners(); !ok) return ok;
     guard_.renumber(mesh_.compact());
     return ok;
   }
@@ -115,6 +126,26 @@ class Improver {
       if (!done) return tl::unexpected<Error>(done.error());
     }
     return {};
+  }
+
+  // What a pass has looked at in vain need not be looked at again before it has changed.
+  enum PassKind : std::uint8_t { kCollapses, kFlips, kMoves };
+  void begin(PassKind kind) {
+    since_ = begun_[kind];
+    begun_[kind] = ++now_;
+    changed_.resize(mesh_.surface().triangles.size(), 0);
+  }
+  [[nodiscard]] bool has_changed(std::int32_t t) const { return changed_[t] >= since_; }
+  [[nodiscard]] bool star_has_changed(std::int32_t v) const {
+    const auto& star = mesh_.star(v);
+    return std::any_of(star.begin(), star.end(), [this](std::int32_t t) { return has_changed(t); });
+  }
+  void commit(std::span<const std::int32_t> gone, std::span<const PlannedTriangle> planned) {
+    guard_.commit(gone, planned);
+    for (const PlannedTriangle& p : planned) {
+      if (changed_.size() <= static_cast<std::size_t>(p.id)) changed_.resize(p.id + 1, 0);
+      changed_[p.id] = now_;
+    }
   }
 
   struct Candidate {
@@ -149,6 +180,7 @@ class Improver {
 
   Result<std::size_t> collapse_pass() {
     std::size_t done = 0, seen = 0;
+    begin(kCollapses);
     touched_.assign(mesh_.surface().points.size(), false);
     for (const Candidate& e : edges_by_length()) {
       if (++seen % kCheckEvery == 0) {
@@ -158,9 +190,16 @@ class Improver {
       const QuotientTriangle& c = mesh_.surface().triangles[e.triangle];
       const std::int32_t a = c[e.side].orbit, b = c[(e.side + 1) % 3].orbit;
       if (touched_[a] || touched_[b]) continue;
+      if (!star_has_changed(a) && !star_has_changed(b)) continue;
       done += try_collapse(e.triangle, e.side) ? 1 : 0;
     }
     return done;
+  }
+
+  static std::vector<std::int32_t> gone_of(const CollapsePlan& plan) {
+    std::vector<std::int32_t> gone(plan.removed.begin(), plan.removed.end());
+    for (const PlannedTriangle& p : plan.changed) gone.push_back(p.id);
+    return gone;
   }
 
   // The better of the two directions, if either is allowed.
@@ -181,8 +220,7 @@ class Improver {
                      [](const Option& a, const Option& b) { return a.shape > b.shape; });
     for (Option& option : options) {
       const CollapsePlan& plan = option.plan;
-      std::vector<std::int32_t> gone(plan.removed.begin(), plan.removed.end());
-      for (const PlannedTriangle& p : plan.changed) gone.push_back(p.id);
+      const std::vector<std::int32_t> gone = gone_of(plan);
       const bool flat =
           std::all_of(gone.begin(), gone.end(), [this](std::int32_t g) { return planar(g); });
       if (flat) {
@@ -190,7 +228,7 @@ class Improver {
       } else if (!guard_.allows(gone, plan.changed)) {
         continue;
       }
-      guard_.commit(gone, plan.changed);
+      commit(gone, plan.changed);
       mesh_.collapse(plan);
       for (const PlannedTriangle& p : plan.changed) {
         for (const OrbitVertex& v : p.corners) touched_[v.orbit] = true;
@@ -258,7 +296,7 @@ class Improver {
       if (changed.empty()) continue;
       const std::array<std::int32_t, 2> gone{t, other.triangle};
       guard_.follow(gone, changed);
-      guard_.commit(gone, changed);
+      commit(gone, changed);
       ++done;
     }
     return done;
@@ -266,6 +304,7 @@ class Improver {
 
   Result<std::size_t> flip_pass() {
     std::size_t done = 0;
+    begin(kFlips);
     const auto count = static_cast<std::int32_t>(mesh_.surface().triangles.size());
     for (std::int32_t t = 0; t < count; ++t) {
       if (static_cast<std::size_t>(t) % kCheckEvery == 0) {
@@ -278,24 +317,30 @@ class Improver {
     return done;
   }
 
-  bool try_flip(std::int32_t t, std::int32_t side) {
-    if (mesh_.mark(t, side) != 0) return false;
+  [[nodiscard]] std::optional<FlipPlan> plan_flip(std::int32_t t, std::int32_t side) const {
+    if (mesh_.mark(t, side) != 0) return std::nullopt;
     const QuotientNeighbour other = mesh_.across(t, side);
-    if (other.triangle < 0 || other.exponent != 0) return false;
+    if (other.triangle < 0 || other.exponent != 0) return std::nullopt;
     const QuotientSurface& s = mesh_.surface();
-    if (s.patch[t] != s.patch[other.triangle]) return false;
-    if (planar(t) && s.frame[t] != s.frame[other.triangle]) return false;
-    const auto plan = mesh_.plan_flip(t, side);
+    if (s.patch[t] != s.patch[other.triangle]) return std::nullopt;
+    if (planar(t) && s.frame[t] != s.frame[other.triangle]) return std::nullopt;
+    return mesh_.plan_flip(t, side);
+  }
+
+  bool try_flip(std::int32_t t, std::int32_t side) {
+    const QuotientNeighbour other = mesh_.across(t, side);
+    if (!has_changed(t) && (other.triangle < 0 || !has_changed(other.triangle))) return false;
+    const auto plan = plan_flip(t, side);
     if (!plan) return false;
-    if (!betters(*plan, mesh_.points(t), mesh_.points(other.triangle))) return false;
-    const std::array<std::int32_t, 2> gone{t, other.triangle};
+    const std::array<std::int32_t, 2> gone{plan->changed[0].id, plan->changed[1].id};
+    if (!betters(*plan, mesh_.points(gone[0]), mesh_.points(gone[1]))) return false;
     if (planar(t)) {
       if (!keeps_plane(plan->changed[0]) || !keeps_plane(plan->changed[1])) return false;
       guard_.follow(gone, plan->changed);
     } else if (!guard_.allows(gone, plan->changed)) {
       return false;
     }
-    guard_.commit(gone, plan->changed);
+    commit(gone, plan->changed);
     mesh_.flip(*plan);
     return true;
   }
@@ -317,6 +362,7 @@ class Improver {
 
   Result<std::size_t> move_pass() {
     std::size_t done = 0;
+    begin(kMoves);
     const QuotientSurface& s = mesh_.surface();
     for (std::size_t i = 0; i < s.points.size(); ++i) {
       if (i % kCheckEvery == 0) {
@@ -327,35 +373,43 @@ class Improver {
     return done;
   }
 
-  // A vertex inside a curved part, to the middle of its neighbours, on the old surface.
-  bool try_move(std::int32_t v) {
+  // Of a vertex inside a curved part, by area.
+  [[nodiscard]] std::optional<Point3> middle_of_neighbours(std::int32_t v) const {
     const QuotientSurface& s = mesh_.surface();
-    if (s.on_cut[v] != 0 || mesh_.star(v).empty()) return false;
-    double before = 1, weight = 0;
+    if (s.on_cut[v] != 0 || mesh_.star(v).empty()) return std::nullopt;
+    double weight = 0;
     Point3 middle;
     for (const std::int32_t t : mesh_.star(v)) {
-      if (planar(t)) return false;
+      if (planar(t)) return std::nullopt;
       for (std::int32_t i = 0; i < 3; ++i) {
         const QuotientTriangle& c = s.triangles[t];
         const bool at = c[i].orbit == v || c[(i + 1) % 3].orbit == v;
-        if (at && mesh_.mark(t, i) != 0) return false;
+        if (at && mesh_.mark(t, i) != 0) return std::nullopt;
       }
       const auto p = mesh_.points(t);
-      before = std::min(before, shape_of(p));
       const double area = length(area_normal(p[0], p[1], p[2]));
       weight += area;
       middle = middle + (area / 3) * (p[0] + p[1] + p[2]);
     }
-    if (!(weight > 0)) return false;
-    const auto hit = guard_.nearest((1 / weight) * middle, 10 * guard_.most());
+    if (!(weight > 0)) return std::nullopt;
+    return (1 / weight) * middle;
+  }
+
+  // To the middle of its neighbours, on the old surface.
+  bool try_move(std::int32_t v) {
+    if (!star_has_changed(v)) return false;
+    const auto middle = middle_of_neighbours(v);
+    if (!middle) return false;
+    double before = 1, after = 1;
+    for (const std::int32_t t : mesh_.star(v)) before = std::min(before, shape_of(mesh_.points(t)));
+    const auto hit = guard_.nearest(*middle, 10 * guard_.most());
     if (hit.triangle < 0) return false;
     const std::vector<PlannedTriangle> planned = mesh_.plan_move(v, hit.point);
-    double after = 1;
     for (const PlannedTriangle& p : planned) after = std::min(after, shape_of(p.points));
     if (after <= kBetter * before) return false;
     const std::vector<std::int32_t> gone = mesh_.star(v);
     if (!guard_.allows(gone, planned)) return false;
-    guard_.commit(gone, planned);
+    commit(gone, planned);
     mesh_.move(v, hit.point);
     return true;
   }
@@ -412,8 +466,84 @@ class Improver {
     if (after < kFitShape * before) return false;
     const std::vector<std::int32_t> gone = mesh_.star(v);
     if (!guard_.allows(gone, planned)) return false;
-    guard_.commit(gone, planned);
+    commit(gone, planned);
     mesh_.move(v, place);
+    return true;
+  }
+
+  Result<void> open_narrow_corners() {
+    guard_.relax(kNarrowRelief);
+    for (int pass = 0; pass < kMostPasses; ++pass) {
+      std::size_t done = 0;
+      const auto count = static_cast<std::int32_t>(mesh_.surface().triangles.size());
+      for (std::int32_t t = 0; t < count; ++t) {
+        if (!mesh_.alive(t) || planar(t) || narrow_corners(mesh_.points(t)) == 0) continue;
+        if (auto state = context_.check(); !state) return state;
+        done += open(t) ? 1 : 0;
+      }
+      if (done == 0) break;
+    }
+    return {};
+  }
+
+  static int narrow_corners(const std::array<Point3, 3>& p) {
+    int count = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      count += angle_at(p[i], p[(i + 1) % 3], p[(i + 2) % 3]) < kNarrowCorner ? 1 : 0;
+    }
+    return count;
+  }
+
+  // By a flip, a collapse, or a move of a vertex.
+  bool open(std::int32_t t) {
+    for (std::int32_t side = 0; side < 3; ++side) {
+      const auto plan = plan_flip(t, side);
+      if (!plan) continue;
+      const std::array<std::int32_t, 2> gone{plan->changed[0].id, plan->changed[1].id};
+      if (!opens(gone, plan->changed)) continue;
+      mesh_.flip(*plan);
+      return true;
+    }
+    for (std::int32_t side = 0; side < 3; ++side) {
+      for (const bool to_start : {false, true}) {
+        if (!mesh_.may_leave(t, side, !to_start)) continue;
+        const auto plan = mesh_.plan_collapse(t, side, to_start);
+        if (!plan || !opens(gone_of(*plan), plan->changed)) continue;
+        mesh_.collapse(*plan);
+        return true;
+      }
+    }
+    for (const OrbitVertex& corner : mesh_.surface().triangles[t]) {
+      const auto place = middle_of_neighbours(corner.orbit);
+      if (!place) continue;
+      for (const double share : {1.0, 0.5}) {
+        const Point3 from = mesh_.surface().points[corner.orbit];
+        const auto hit = guard_.nearest(from + share * (*place - from), 10 * guard_.most());
+        if (hit.triangle < 0) continue;
+        if (!opens(mesh_.star(corner.orbit), mesh_.plan_move(corner.orbit, hit.point))) continue;
+        mesh_.move(corner.orbit, hit.point);
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // Whether there are fewer narrow corners then; if so, the guard knows of it.
+  bool opens(std::span<const std::int32_t> gone, std::span<const PlannedTriangle> planned) {
+    int before = 0, after = 0;
+    double worst = 1, least = kOpenedShape;
+    for (const std::int32_t t : gone) {
+      const auto p = mesh_.points(t);
+      if (!planar(t)) before += narrow_corners(p);
+      least = std::min(least, shape_of(p));
+    }
+    for (const PlannedTriangle& p : planned) {
+      if (!planar(p.id)) after += narrow_corners(p.points);
+      if (planar(p.id) && !keeps_plane(p)) return false;
+      worst = std::min(worst, shape_of(p.points));
+    }
+    if (after >= before || worst < least || !guard_.allows(gone, planned)) return false;
+    commit(gone, planned);
     return true;
   }
 
@@ -421,6 +551,10 @@ class Improver {
   DeviationGuard& guard_;
   ExecutionContext& context_;
   std::vector<bool> touched_;
+  std::vector<std::uint32_t> changed_;  // per triangle: when it last was, by now_
+  std::array<std::uint32_t, 3> begun_{};  // the last pass of each kind
+  std::uint32_t now_ = 0;
+  std::uint32_t since_ = 0;  // the pass before this one
   std::vector<double> heights_;  // per triangle: of the old surface over it
   bool shaping_ = false;         // now only better shapes count, not fewer triangles
   bool settling_ = false;        // now only Delaunay flips

@@ -146,11 +146,16 @@ TriangleTree::Hit TriangleTree::nearest(Point3 p, double reach) const {
   return hit;
 }
 
-bool TriangleTree::within(Point3 p, double reach) const {
+bool TriangleTree::within(Point3 p, double reach, std::int32_t& last) const {
   bool found = false;
   double squared_reach = reach * reach;
-  search(p, squared_reach, [&](const Item& item) {
+  const auto look = [&](const Item& item) {
     found = squared_distance(p, closest_point(p, item.a, item.b, item.c)) <= squared_reach;
+    return found;
+  };
+  if (last >= 0 && look(items_[last])) return true;
+  search(p, squared_reach, [&](const Item& item) {
+    if (look(item)) last = static_cast<std::int32_t>(&item - items_.data());
     return found;
   });
   return found;

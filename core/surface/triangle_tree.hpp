@@ -32,7 +32,13 @@ class TriangleTree {
   // The nearest triangle no farther than `reach`.  Cost: O(log n) as a rule.
   [[nodiscard]] Hit nearest(Point3 p, double reach) const;
   // Any triangle no farther than `reach`.
-  [[nodiscard]] bool within(Point3 p, double reach) const;
+  [[nodiscard]] bool within(Point3 p, double reach) const {
+    std::int32_t last = -1;
+    return within(p, reach, last);
+  }
+  // The same for points near each other: what was found last is looked at first. `last`: -1 at
+  // first.
+  [[nodiscard]] bool within(Point3 p, double reach, std::int32_t& last) const;
 
  private:
   struct Node {

@@ -217,6 +217,8 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
     }
     if (auto same = check_shape(improved, context); !same) {
       if (auto state = context.check(); !state) return tl::unexpected<Error>(state.error());
+      // A cut that is off before anything is improved is off at every share.
+      if (last.message.empty() && !check_shape(given, context)) return tl::unexpected(same.error());
       last = same.error();
       continue;
     }
@@ -267,7 +269,8 @@ Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
 }
 
 bool SurfaceSectorSource::all_near(const IndexedSurface& surface, const TriangleTree& tree) const {
-  const auto near = [&](Point3 p) { return tree.within(p, tolerance_); };
+  std::int32_t last = -1;
+  const auto near = [&](Point3 p) { return tree.within(p, tolerance_, last); };
   return std::all_of(surface.points.begin(), surface.points.end(), near) &&
          std::all_of(surface.triangles.begin(), surface.triangles.end(), [&](const Triangle& t) {
            return near((1.0 / 3) *
