@@ -51,8 +51,10 @@ double cost(const RefinedSolid& mesh) {
   return static_cast<double>(mesh.count()) * (is_poor(mesh) ? kPoorFactor : 1);
 }
 
-bool is_better(const RefinedSolid& a, const RefinedSolid& b) {
-  return a.guarded != b.guarded ? a.guarded < b.guarded : cost(a) < cost(b);
+bool is_better(const RefinedSolid& a, const RefinedSolid& b, const MeshOptions& options) {
+  if (a.guarded != b.guarded) return a.guarded < b.guarded;
+  if (!options.delaunay) return cost(a) < cost(b);
+  return a.delaunay != b.delaunay ? a.delaunay : a.count() < b.count();
 }
 
 bool is_worth_another_start(const RefinedSolid& mesh,
@@ -63,7 +65,7 @@ bool is_worth_another_start(const RefinedSolid& mesh,
   const auto count = static_cast<double>(mesh.count());
   if (static_cast<double>(mesh.guarded) > kHopelessShare * count) return false;
   const bool sized = count <= kSizedShare * mesh.least_count;
-  const bool poor = sized ? mesh.least_sine < kSizedPoorSine : is_poor(mesh);
+  const bool poor = !options.delaunay && (sized ? mesh.least_sine < kSizedPoorSine : is_poor(mesh));
   if (mesh.guarded > 0 || poor) {
     // Cuts of a surface have other triangles each, cuts of facets as given do not.
     return mesh.count() <= (effort > 0 ? kMendableCell : kSmallCell) && effort <= kMendBudget;
@@ -92,7 +94,7 @@ Result<RefinedSolid> refine_from_starts(const SectorSource& source,
                          : tl::unexpected<Error>(solid.error());
     timings.refine += milliseconds_since(began);
     if (refined) {
-      if (!best || is_better(*refined, *best)) best = std::move(*refined);
+      if (!best || is_better(*refined, *best, options)) best = std::move(*refined);
       continue;
     }
     last = refined.error();

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -27,10 +28,10 @@ constexpr std::size_t kRounds = 3;
 constexpr std::size_t kRoundsIfLarge = 2;
 constexpr std::size_t kLargeCell = 8'000;
 constexpr int kDepths[] = {2, 2, 3, 4, 5};
-// Depths of refinement where no improvement follows, and rounds of flips and refinement. What is
-// bad after a shallow run is little, and so is the budget of the deeper one.
+// Depths of refinement where no improvement follows. What is bad after a shallow run is little, and
+// so is the budget of the deeper one.
 constexpr int kDepthsAlone[] = {2, 3, 4};
-constexpr int kDelaunayRounds = 4;
+constexpr int kDepthsDelaunay[] = {2, 2, 3, 3, 4, 4, 6, 6, 8, 8};
 
 // What later runs of refinement add for the sake of shape is little in models without acute input.
 // Where it is not, it is a cascade.
@@ -40,6 +41,7 @@ constexpr std::uint64_t kLeastGrowth = 2'000;
 struct Work {
   std::uint64_t most_shaped = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t most_tets = 0;
+  bool illegal_too = false;  // what is not Delaunay is refined like what is bad
   SolidRefineCounters refined;
 };
 
@@ -88,6 +90,7 @@ Result<void> refine(SolidEditor& editor,
   refiner.set_most_tets(work.most_tets);
   refiner.set_most_shaped(work.most_shaped);
   refiner.set_max_depth(depth);
+  if (work.illegal_too) refiner.treat_illegal();
   auto done = refiner.run();
   work.refined += refiner.counters();
   work.most_shaped =
@@ -99,9 +102,10 @@ Result<void> refine(SolidEditor& editor,
 // long as something is bad, it alone is refined, ever deeper, and mended.
 Result<void> improve(SolidEditor& editor,
                      const SolidCriteria& criteria,
-                     double goal_deg,
+                     const MeshOptions& options,
                      ExecutionContext& context,
                      Work& work) {
+  const double goal_deg = std::max(kGoalDeg, options.min_dihedral_deg);
   const double goal = std::sin(goal_deg * std::numbers::pi / 180);
   std::size_t rounds = kRounds;
   for (std::size_t round = 0; round < std::size(kDepths); ++round) {
@@ -115,6 +119,7 @@ Result<void> improve(SolidEditor& editor,
     if (round + 1 >= rounds && !has_bad_tet(editor, criteria)) break;
     if (auto ok = refine(editor, criteria, kDepths[round], context, work); !ok) return ok;
   }
+  if (options.delaunay) return {};  // flips undo what comes now
   SolidSurgery surgery(editor, criteria);
   surgery.keep_size();
   SolidImprover improver(surgery, criteria, context);
@@ -159,23 +164,29 @@ Result<void> count_exempt(const SolidEditor& editor,
   return {};
 }
 
-// Everything but the improvement, for meshes that are to be Delaunay.
+// Everything but the improvement. A mesh that is to be Delaunay is made so first, for circumcentres
+// mean little where it is not, and again after every run: what flips make bad is refined again.
 Result<void> refine_alone(SolidEditor& editor,
                           const SolidCriteria& criteria,
                           const MeshOptions& options,
                           ExecutionContext& context,
                           Work& work) {
-  for (const int depth : kDepthsAlone) {
+  if (!options.delaunay) {
+    for (const int depth : kDepthsAlone) {
+      if (auto ok = refine(editor, criteria, depth, context, work); !ok) return ok;
+    }
+    return {};
+  }
+  for (const int depth : kDepthsDelaunay) {
+    if (const auto flips = legalise(editor, context); !flips) {
+      return tl::unexpected<Error>(flips.error());
+    }
+    work.illegal_too = count_illegal(editor) > 0;
+    if (!work.illegal_too && !has_bad_tet(editor, criteria)) return {};
     if (auto ok = refine(editor, criteria, depth, context, work); !ok) return ok;
   }
-  // What flips make bad is refined again.
-  for (int round = 0; options.delaunay && round < kDelaunayRounds; ++round) {
-    const auto flips = legalise(editor, context);
-    if (!flips) return tl::unexpected<Error>(flips.error());
-    if (*flips == 0) break;
-    if (auto ok = refine(editor, criteria, kDepthsAlone[2], context, work); !ok) return ok;
-  }
-  return {};
+  const auto flips = legalise(editor, context);
+  return flips ? Result<void>{} : tl::unexpected<Error>(flips.error());
 }
 
 Statistics::Refinement count_work(const SolidEditor& editor, const SolidRefineCounters& refined) {
@@ -215,13 +226,13 @@ Result<RefinedSolid> refine_solid(InitialTetrahedralization solid,
   }
   Work work;
   work.most_tets = most_tets;
-  if (options.delaunay || options.plain) {
-    auto ok = refine_alone(editor, criteria, options, context, work);
-    if (!ok) return tl::unexpected<Error>(ok.error());
-  } else {
+  if (!options.plain) {
     auto ok = refine(editor, criteria, kDepths[0], context, work);
-    const double goal_deg = std::max(kGoalDeg, options.min_dihedral_deg);
-    if (ok) ok = improve(editor, criteria, goal_deg, context, work);
+    if (ok) ok = improve(editor, criteria, options, context, work);
+    if (!ok) return tl::unexpected<Error>(ok.error());
+  }
+  if (options.plain || options.delaunay) {
+    auto ok = refine_alone(editor, criteria, options, context, work);
     if (!ok) return tl::unexpected<Error>(ok.error());
   }
   result.refinement = count_work(editor, work.refined);

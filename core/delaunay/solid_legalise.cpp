@@ -12,18 +12,8 @@ namespace {
 // ever.
 constexpr double kCertainShare = 1e-9;
 // Flips a tetrahedron at most: each lowers the lifted surface, but rounding could make a cycle.
-constexpr std::uint64_t kMaxFlipsATet = 20;
+constexpr std::uint64_t kMaxFlipsATet = 5;
 constexpr std::uint64_t kCheckEvery = 1024;
-
-// Whether the corner behind face i lies inside the sphere of t.
-bool is_illegal(const SolidEditor& editor, TetId t, std::uint32_t i) {
-  const QuotientTetrahedralization& mesh = editor.mesh();
-  const Tet& tet = mesh.tet(t);
-  if (tet.facet[i] != kNoFacet || tet.nb[i] == kNoHalfFace) return false;
-  const TetMeasures& m = editor.measures(t);
-  const Corner e = mesh.corner(mesh.neighbour({t, 0}, i), face_of(tet.nb[i]));
-  return squared_distance(mesh.lift(e), m.centre) < m.radius2 * (1 - kCertainShare);
-}
 
 class Legaliser {
  public:
@@ -170,6 +160,15 @@ class Legaliser {
 };
 
 }  // namespace
+
+bool is_illegal(const SolidEditor& editor, TetId t, std::uint32_t i) {
+  const QuotientTetrahedralization& mesh = editor.mesh();
+  const Tet& tet = mesh.tet(t);
+  if (tet.facet[i] != kNoFacet || tet.nb[i] == kNoHalfFace) return false;
+  const TetMeasures& m = editor.measures(t);
+  const Corner e = mesh.corner(mesh.neighbour({t, 0}, i), face_of(tet.nb[i]));
+  return squared_distance(mesh.lift(e), m.centre) < m.radius2 * (1 - kCertainShare);
+}
 
 Result<std::uint64_t> legalise(SolidEditor& editor, ExecutionContext& context) {
   return Legaliser(editor, context).run();

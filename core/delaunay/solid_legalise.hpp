@@ -16,6 +16,9 @@ namespace symcell {
 // Returns the number of flips.  Errors: limits.  Source: [Joe91], in the quotient.
 [[nodiscard]] Result<std::uint64_t> legalise(SolidEditor& editor, ExecutionContext& context);
 
+// Whether the corner behind free face i lies inside the sphere of t, by more than rounding.
+[[nodiscard]] bool is_illegal(const SolidEditor& editor, TetId t, std::uint32_t i);
+
 // Free faces that are not locally Delaunay by more than rounding.
 [[nodiscard]] std::uint64_t count_illegal(const SolidEditor& editor);
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/delaunay/solid_legalise.hpp"
+
 namespace symcell {
 namespace {
 
@@ -20,6 +22,7 @@ constexpr int kMaxPlaneWalk = 1000;
 constexpr int kMaxTurns = 500;
 constexpr std::uint64_t kCheckEvery = 256;
 // Of the queue's key.
+constexpr std::int32_t kLast = std::numeric_limits<std::int32_t>::min();
 constexpr double kStepsAnOctave = 16;
 // A mesh that has grown by this factor, to this size at least, is put in order again.
 constexpr std::size_t kGrowth = 3;
@@ -46,7 +49,13 @@ void SolidRefiner::enqueue(TetId t) {
   const TetMeasures& m = editor_.measures(t);
   const double sized = criteria_.size_excess2(m, tet.region);
   const double ratio = criteria_.excess(m, tet.region, false);
-  if (ratio <= 1) return;
+  if (ratio <= 1) {
+    bool illegal = false;
+    for (std::uint32_t i = 0; illegal_too_ && i < 4; ++i)
+      illegal = illegal || is_illegal(editor_, t, i);
+    if (illegal) queue_.push({kLast, t, tet.version});
+    return;
+  }
   const bool exempt = sized <= 1 && criteria_.exemption(mesh_, tet) != SolidExemption::kNone;
   // Shape before size, the worst first, but in steps: within one, tetrahedra follow each other as
   // they lie in memory.

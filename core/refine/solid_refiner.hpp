@@ -53,6 +53,10 @@ class SolidRefiner {
   // points.
   void set_max_depth(int depth) { max_depth_ = depth; }
 
+  // Tetrahedra with faces that are not locally Delaunay, where no flip helps, are given a point as
+  // well, after all others.
+  void treat_illegal() { illegal_too_ = true; }
+
   // No points for the sake of shape are added to meshes larger than this.
   void set_most_shaped(std::uint64_t most) { most_shaped_ = most; }
   // The run ends with kElementLimit where the mesh gets larger than this.
@@ -124,6 +128,7 @@ class SolidRefiner {
   ExecutionContext& context_;
   std::priority_queue<Entry> queue_;
   int max_depth_ = kMaxChain;
+  bool illegal_too_ = false;
   std::uint64_t shape_budget_ = 0;
   std::uint64_t most_shaped_ = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t most_tets_ = std::numeric_limits<std::uint64_t>::max();

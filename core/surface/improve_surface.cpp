@@ -551,10 +551,10 @@ class Improver {
   DeviationGuard& guard_;
   ExecutionContext& context_;
   std::vector<bool> touched_;
-  std::vector<std::uint32_t> changed_;  // per triangle: when it last was, by now_
+  std::vector<std::uint32_t> changed_;    // per triangle: when it last was, by now_
   std::array<std::uint32_t, 3> begun_{};  // the last pass of each kind
   std::uint32_t now_ = 0;
-  std::uint32_t since_ = 0;  // the pass before this one
+  std::uint32_t since_ = 0;      // the pass before this one
   std::vector<double> heights_;  // per triangle: of the old surface over it
   bool shaping_ = false;         // now only better shapes count, not fewer triangles
   bool settling_ = false;        // now only Delaunay flips

@@ -351,6 +351,10 @@ class SolidLaws {
     }
     // Where the axis is inside and sectors are narrow, whole cells are.
     const bool narrow = model_.axis_inside && cell_.fold > 6;
+    if (options_.delaunay && !options_.plain && !model_.acute && !narrow &&
+        !outcome_.statistics.delaunay) {
+      broken("delaunay: asked for, and not so");
+    }
     if (!model_.acute && !narrow && bad > cell_.element_count() / 5 + 10) {
       std::string reasons;
       for (const ExemptCount& e : outcome_.statistics.exempt) {
