@@ -130,19 +130,22 @@ void TriangleTree::search(Point3 p, double& squared_reach, const Visit& visit) c
   }
 }
 
-TriangleTree::Hit TriangleTree::nearest(Point3 p, double reach) const {
+TriangleTree::Hit TriangleTree::nearest(Point3 p, double reach, std::int32_t& last) const {
   Hit hit;
   double squared_reach = reach * reach;
-  search(p, squared_reach, [&](const Item& item) {
+  const auto look = [&](const Item& item) {
     const Point3 q = closest_point(p, item.a, item.b, item.c);
     const double squared = squared_distance(p, q);
     const bool tie = squared == hit.squared && item.triangle < hit.triangle;
     if (squared <= squared_reach && (squared < hit.squared || tie)) {
       hit = {item.triangle, squared, q};
       squared_reach = squared;
+      last = static_cast<std::int32_t>(&item - items_.data());
     }
     return false;
-  });
+  };
+  if (last >= 0) static_cast<void>(look(items_[last]));
+  search(p, squared_reach, look);
   return hit;
 }
 

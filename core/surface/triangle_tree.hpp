@@ -30,7 +30,13 @@ class TriangleTree {
   TriangleTree(std::span<const Point3> points, std::span<const Triangle> triangles);
 
   // The nearest triangle no farther than `reach`.  Cost: O(log n) as a rule.
-  [[nodiscard]] Hit nearest(Point3 p, double reach) const;
+  [[nodiscard]] Hit nearest(Point3 p, double reach) const {
+    std::int32_t last = -1;
+    return nearest(p, reach, last);
+  }
+  // The same for a point near one that was looked for before: `last`, -1 at first, tells where the
+  // search begins, not what it finds.
+  [[nodiscard]] Hit nearest(Point3 p, double reach, std::int32_t& last) const;
   // Any triangle no farther than `reach`.
   [[nodiscard]] bool within(Point3 p, double reach) const {
     std::int32_t last = -1;

@@ -27,9 +27,13 @@ constexpr double kScanReach = 0.025;
 constexpr std::size_t kScanSamples = 60;
 constexpr std::size_t kRefinedOfScan = 24;
 constexpr std::int32_t kMostScannedFold = 6;  // equal moments come with cubic symmetry
+// Mean distances, of the diameter, that no refinement of an axis mends.
+constexpr double kFarOff = 0.04;
 // Axes nearer than this (radians) are one.
 constexpr double kSameAxis = 1e-2;
 constexpr double kDominance = 4;
+// Of two folds the larger one leads unless the other fits better by this factor.
+constexpr double kMuchBetter = 0.7;
 // Below the noise of single precision, of the diameter, all errors are equal.
 constexpr double kNoiseRel = 1e-6;
 constexpr double kAcceptedAnyway = 1e-3;  // of the diameter
@@ -205,12 +209,33 @@ class Detector {
     return after <= 1.05 * before + 1e-6 * diameter_ ? nice : axis;
   }
 
+  // The axes about which a turn misses the surface least come first.
+  [[nodiscard]] std::vector<SymmetryAxis> by_fit(const std::vector<SymmetryAxis>& axes,
+                                                 std::int32_t fold) const {
+    std::vector<std::pair<double, SymmetryAxis>> judged;
+    for (const SymmetryAxis& axis : axes) judged.emplace_back(rough_error(axis, fold), axis);
+    std::stable_sort(judged.begin(), judged.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<SymmetryAxis> sorted;
+    for (const auto& [error, axis] : judged) sorted.push_back(axis);
+    return sorted;
+  }
+  [[nodiscard]] double rough_error(const SymmetryAxis& axis, std::int32_t fold) const {
+    constexpr std::size_t kSamples = 200;
+    return shape_.mean_error(axis, 2 * std::numbers::pi / fold, kFarOff * diameter_, kSamples);
+  }
+  [[nodiscard]] bool fits_nearly(const SymmetryAxis& axis, std::int32_t fold) const {
+    return rough_error(axis, fold) <= std::max(kFarOff / 2 * diameter_, 10 * tolerance_);
+  }
+
   Result<DetectedSymmetry> check_fold(const std::vector<SymmetryAxis>& axes) {
     const std::int32_t n = *options_.fold;
     AxisResult best;
     ShapeError best_error;
     best_error.distance = kInfinity;
-    for (const SymmetryAxis& candidate : axes) {
+    for (const SymmetryAxis& candidate : by_fit(axes, n)) {
+      // The others are far off, and refining them takes its time.
+      if (best.fold == n && best.error <= tolerance_ && !fits_nearly(candidate, n)) break;
       const SymmetryAxis axis = refined(candidate, n);
       // A better axis than those before, or it does not matter how bad.
       auto error = shape_.error(axis, n, best_error.distance, context_);
@@ -279,9 +304,10 @@ class Detector {
     double leading = kInfinity;
     for (const std::int32_t n : folds) {
       constexpr std::size_t kSamples = 300;
-      const double error = shape_.mean_error(candidate, 2 * std::numbers::pi / n,
-                                             kRoughTolerances * tolerance_, kSamples);
-      if (error < 0.7 * leading) {
+      const double error =
+          shape_.mean_error(candidate, 2 * std::numbers::pi / n, kRoughTolerances * tolerance_,
+                            kSamples, kMuchBetter * leading);
+      if (error < kMuchBetter * leading) {
         leading = error;
         leader = n;
       }

@@ -17,7 +17,13 @@ constexpr std::size_t kRefineSamples = 2500;
 // Distances of one error: enough that no feature that counts escapes, few enough for a second.
 constexpr std::size_t kMostDistances = 150'000;
 constexpr std::size_t kLeastSamples = 1000;
-constexpr int kMostIterations = 12;
+constexpr int kMostIterations = 16;
+// The first iterations look at fewer points, until a step is below this share of the diameter or
+// they are so many. The last step is below the other.
+constexpr std::size_t kRoughSamples = 400;
+constexpr int kMostRough = 8;
+constexpr double kRoughStep = 1e-5;
+constexpr double kLeastStep = 1e-11;
 // Points farther than this from the surface, of the diameter, do not pull at the axis.
 constexpr double kPullReach = 0.1;
 constexpr std::size_t kCheckEvery = 4096;
@@ -143,13 +149,13 @@ bool ShapeSymmetry::fits(const SymmetryAxis& axis, double angle, double reach) c
   return true;
 }
 
-double ShapeSymmetry::mean_error(const SymmetryAxis& axis,
-                                 double angle,
-                                 double cap,
-                                 std::size_t count) const {
+double ShapeSymmetry::mean_error(
+    const SymmetryAxis& axis, double angle, double cap, std::size_t count, double enough) const {
   double sum = 0;
   count = std::min(count, spread_.size());
+  const double most = enough * enough * static_cast<double>(count);
   for (std::size_t i = 0; i < count; ++i) {
+    if (sum > most) return kInfinity;
     const auto hit = tree_.nearest(turned(axis, angle, spread_[i]), cap);
     sum += hit.triangle < 0 ? cap * cap : hit.squared;
   }
@@ -163,8 +169,12 @@ SymmetryAxis ShapeSymmetry::refined(SymmetryAxis axis,
                                     bool move_origin,
                                     bool tilt) const {
   const double c = std::cos(angle), s = std::sin(angle);
-  const std::size_t count = std::min(kRefineSamples, spread_.size());
+  // A few points find the place, all of them settle it.
+  const std::size_t all = std::min(kRefineSamples, spread_.size());
+  std::size_t count = std::min(kRoughSamples, all);
+  std::vector<std::int32_t> last(all, -1);
   for (int iteration = 0; iteration < kMostIterations && (move_origin || tilt); ++iteration) {
+    if (iteration == kMostRough) count = all;
     const Point3 d = axis.direction;
     const Point3 seed = std::abs(d.x) < 0.6 ? Point3{1, 0, 0} : Point3{0, 1, 0};
     Point3 u = cross(d, seed);
@@ -179,7 +189,7 @@ SymmetryAxis ShapeSymmetry::refined(SymmetryAxis axis,
     for (std::size_t i = 0; i < count; ++i) {
       const Point3 p = spread_[i] - axis.origin;
       const Point3 q = rotate_about(d, c, s, p);
-      const auto hit = tree_.nearest(axis.origin + q, kPullReach * diameter_);
+      const auto hit = tree_.nearest(axis.origin + q, kPullReach * diameter_, last[i]);
       if (hit.triangle < 0) continue;
       const Point3 n = area_normal(surface_, surface_.triangles[hit.triangle]);
       const double l = length(n);
@@ -219,7 +229,11 @@ SymmetryAxis ShapeSymmetry::refined(SymmetryAxis axis,
     axis.direction = (1 / length(direction)) * direction;
     axis.origin = axis.origin + x[2] * u + x[3] * v;
     const double step = std::abs(x[0]) + std::abs(x[1]) + std::abs(x[2]) + std::abs(x[3]);
-    if (step < 1e-11 * diameter_) break;
+    if (count < all && step < kRoughStep * diameter_) {
+      count = all;
+    } else if (step < kLeastStep * diameter_) {
+      break;
+    }
   }
   return axis;
 }

@@ -8,6 +8,7 @@
 #include "core/base/error.hpp"
 #include "core/base/execution_context.hpp"
 #include "core/geometry/point.hpp"
+#include "core/model/mesh_options.hpp"  // kInfinity
 #include "core/surface/indexed_surface.hpp"
 #include "core/surface/triangle_tree.hpp"
 
@@ -48,11 +49,13 @@ class ShapeSymmetry {
   // after one or two distances.
   [[nodiscard]] bool fits(const SymmetryAxis& axis, double angle, double reach) const;
 
-  // Root mean square distance of `count` points turned by `angle`, each at most `cap`.
+  // Root mean square distance of `count` points turned by `angle`, each at most `cap`; infinite as
+  // soon as it is sure to be above `enough`.
   [[nodiscard]] double mean_error(const SymmetryAxis& axis,
                                   double angle,
                                   double cap,
-                                  std::size_t count) const;
+                                  std::size_t count,
+                                  double enough = kInfinity) const;
 
   // Moves the axis so that the shape turned by `angle` fits best: point-to-plane Gauss-Newton with
   // weights against outliers.
