@@ -19,6 +19,8 @@ namespace {
 // to twice as many tetrahedra.
 constexpr int kMostStarts = 4;
 constexpr int kMostStartsIfBad = 8;
+// Meshes made for want of one that a symmetry cell can be cut from.
+constexpr int kMostCuts = 6;
 // Larger cells are meshed once, but for bad tetrahedra, and up to the second of these.
 constexpr std::uint64_t kSmallCell = 8'000;
 constexpr std::uint64_t kMendableCell = 60'000;
@@ -73,11 +75,10 @@ bool is_worth_another_start(const RefinedSolid& mesh,
   return !sized && mesh.count() <= kSmallCell && effort <= kStartBudget;
 }
 
-Result<RefinedSolid> refine_from_starts(const SectorSource& source,
+Result<RefinedSolid> refine_from_starts(SolidStarts& starts,
                                         const MeshOptions& options,
                                         ExecutionContext& context,
                                         Statistics::TimingsMs& timings) {
-  SolidStarts starts(source);
   std::optional<RefinedSolid> best;
   Error last;
   for (int start = 0; start < kMostStartsIfBad; ++start) {
@@ -114,21 +115,30 @@ Result<MeshOutcome> mesh_solid(const SectorSource& source,
                                ExecutionContext& context) {
   MeshOutcome outcome;
   Statistics& stats = outcome.statistics;
-  auto refined = refine_from_starts(source, options, context, stats.timings_ms);
-  if (!refined) return tl::unexpected<Error>(refined.error());
-  stats.refinement = refined->refinement;
-  stats.exempt = std::move(refined->exempt);
-  stats.delaunay = refined->delaunay;
-
+  SolidStarts starts(source);
+  for (int attempt = 1;; ++attempt) {
+    auto refined = refine_from_starts(starts, options, context, stats.timings_ms);
+    if (!refined) return tl::unexpected<Error>(refined.error());
+    const auto start = Clock::now();
+    const QuotientTetrahedralization& mesh = refined->solid.mesh;
+    context.report(Phase::kCell, 0.92, mesh.tet_count(), 1);
+    const auto cut = cut_solid_cell(mesh, context);
+    stats.timings_ms.cell += milliseconds_since(start);
+    if (cut) {
+      stats.refinement = refined->refinement;
+      stats.exempt = std::move(refined->exempt);
+      stats.delaunay = refined->delaunay;
+      outcome.mesh = build_solid_cell_mesh(refined->solid, *cut, source.symmetry());
+      break;
+    }
+    // Rarely, in narrow sectors, a mesh has no cell without flaws: another one has.
+    const bool may_go_on = cut.error().code == ErrorCode::kInternal && attempt < kMostCuts;
+    if (!may_go_on || !starts.has_next()) return tl::unexpected<Error>(cut.error());
+  }
   const auto start = Clock::now();
-  const QuotientTetrahedralization& mesh = refined->solid.mesh;
-  context.report(Phase::kCell, 0.92, mesh.tet_count(), 1);
-  const auto cut = cut_solid_cell(mesh, context);
-  if (!cut) return tl::unexpected<Error>(cut.error());
-  outcome.mesh = build_solid_cell_mesh(refined->solid, *cut, source.symmetry());
   if (options.order == 2) outcome.mesh = elevate_to_quadratic(outcome.mesh);
   measure_cell_3(outcome.mesh, stats);
-  stats.timings_ms.cell = milliseconds_since(start);
+  stats.timings_ms.cell += milliseconds_since(start);
   stats.peak_memory_bytes = peak_memory_bytes();
   context.report(Phase::kDone, 1, stats.cell.elements, 1);
   return outcome;

@@ -27,6 +27,12 @@ constexpr double kInsertionGoalDeg = 25;
 constexpr std::size_t kRounds = 3;
 constexpr std::size_t kRoundsIfLarge = 2;
 constexpr std::size_t kLargeCell = 8'000;
+// Bad tetrahedra that are mended without a full round.
+constexpr std::size_t kFewBad = 10;
+constexpr double kFewBadShare = 5e-4;
+// Rounds after which more than this share of the bad tetrahedra is left are the last: what is bad
+// is the input's fault, and refinement only adds to it.
+constexpr double kLeastProgress = 0.9;
 constexpr int kDepths[] = {2, 2, 3, 4, 5};
 // Depths of refinement where no improvement follows. What is bad after a shallow run is little, and
 // so is the budget of the deeper one.
@@ -53,14 +59,15 @@ double total_volume(const SolidEditor& editor) {
   return sum;
 }
 
-bool has_bad_tet(const SolidEditor& editor, const SolidCriteria& criteria) {
+std::size_t count_bad(const SolidEditor& editor, const SolidCriteria& criteria) {
   const QuotientTetrahedralization& mesh = editor.mesh();
+  std::size_t count = 0;
   for (TetId t = 0; t < mesh.tet_slots(); ++t) {
     if (!mesh.alive(t)) continue;
     const bool exempt = criteria.exemption(mesh, mesh.tet(t)) != SolidExemption::kNone;
-    if (criteria.is_bad(editor.measures(t), mesh.tet(t).region, exempt)) return true;
+    count += criteria.is_bad(editor.measures(t), mesh.tet(t).region, exempt) ? 1 : 0;
   }
-  return false;
+  return count;
 }
 
 // A bound on the volume asks for at least volume / bound tetrahedra: refuse at once what cannot
@@ -99,7 +106,7 @@ Result<void> refine(SolidEditor& editor,
 }
 
 // Full rounds of improvement, each followed by refinement of what it left over the bounds; then, as
-// long as something is bad, it alone is refined, ever deeper, and mended.
+// long as something is bad, it is refined, ever deeper, and mended: alone where it is little.
 Result<void> improve(SolidEditor& editor,
                      const SolidCriteria& criteria,
                      const MeshOptions& options,
@@ -107,16 +114,25 @@ Result<void> improve(SolidEditor& editor,
                      Work& work) {
   const double goal_deg = std::max(kGoalDeg, options.min_dihedral_deg);
   const double goal = std::sin(goal_deg * std::numbers::pi / 180);
-  std::size_t rounds = kRounds;
+  bool full = true;
+  std::size_t bad_before = editor.mesh().tet_count();
   for (std::size_t round = 0; round < std::size(kDepths); ++round) {
     context.report(Phase::kImprove, 0.6 + 0.05 * static_cast<double>(round),
                    editor.mesh().tet_count());
-    if (round < rounds) editor.compact();
+    if (full) editor.compact();
     SolidSurgery surgery(editor, criteria);
     SolidImprover improver(surgery, criteria, context);
-    if (auto ok = round < rounds ? improver.round(goal) : improver.mend(goal); !ok) return ok;
-    if (editor.mesh().tet_count() > kLargeCell) rounds = kRoundsIfLarge;
-    if (round + 1 >= rounds && !has_bad_tet(editor, criteria)) break;
+    if (auto ok = full ? improver.round(goal) : improver.mend(goal); !ok) return ok;
+    const std::size_t count = editor.mesh().tet_count();
+    const std::size_t rounds = count > kLargeCell ? kRoundsIfLarge : kRounds;
+    if (round + 1 >= rounds) {
+      const std::size_t bad = count_bad(editor, criteria);
+      if (bad == 0 || static_cast<double>(bad) > kLeastProgress * static_cast<double>(bad_before)) {
+        break;
+      }
+      bad_before = bad;
+      full = bad > kFewBad && static_cast<double>(bad) > kFewBadShare * static_cast<double>(count);
+    }
     if (auto ok = refine(editor, criteria, kDepths[round], context, work); !ok) return ok;
   }
   if (options.delaunay) return {};  // flips undo what comes now
@@ -182,7 +198,7 @@ Result<void> refine_alone(SolidEditor& editor,
       return tl::unexpected<Error>(flips.error());
     }
     work.illegal_too = count_illegal(editor) > 0;
-    if (!work.illegal_too && !has_bad_tet(editor, criteria)) return {};
+    if (!work.illegal_too && count_bad(editor, criteria) == 0) return {};
     if (auto ok = refine(editor, criteria, depth, context, work); !ok) return ok;
   }
   const auto flips = legalise(editor, context);
