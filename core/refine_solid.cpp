@@ -21,6 +21,7 @@ namespace {
 constexpr double kGoalDeg = 26;
 // And may cost a vertex where one is below this.
 constexpr double kInsertionGoalDeg = 25;
+constexpr int kLastPasses = 3;
 // Full rounds of improvement: the second takes off 5 to 10 % of the tetrahedra, the third 2 to 5 %,
 // each for a quarter more time, which large meshes are not given. Depths of refinement after each
 // round, full or not.
@@ -47,6 +48,7 @@ constexpr std::uint64_t kLeastGrowth = 2'000;
 struct Work {
   std::uint64_t most_shaped = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t most_tets = 0;
+  bool exempt_too = false;   // in later runs: most of what is bad at first is mended without
   bool illegal_too = false;  // what is not Delaunay is refined like what is bad
   SolidRefineCounters refined;
 };
@@ -98,6 +100,8 @@ Result<void> refine(SolidEditor& editor,
   refiner.set_most_shaped(work.most_shaped);
   refiner.set_max_depth(depth);
   if (work.illegal_too) refiner.treat_illegal();
+  if (work.exempt_too) refiner.treat_exempt();
+  work.exempt_too = true;
   auto done = refiner.run();
   work.refined += refiner.counters();
   work.most_shaped =
@@ -125,22 +129,30 @@ Result<void> improve(SolidEditor& editor,
     if (auto ok = full ? improver.round(goal) : improver.mend(goal); !ok) return ok;
     const std::size_t count = editor.mesh().tet_count();
     const std::size_t rounds = count > kLargeCell ? kRoundsIfLarge : kRounds;
+    bool last = false;
     if (round + 1 >= rounds) {
       const std::size_t bad = count_bad(editor, criteria);
-      if (bad == 0 || static_cast<double>(bad) > kLeastProgress * static_cast<double>(bad_before)) {
-        break;
-      }
+      if (bad == 0) break;
+      last = static_cast<double>(bad) > kLeastProgress * static_cast<double>(bad_before);
       bad_before = bad;
       full = bad > kFewBad && static_cast<double>(bad) > kFewBadShare * static_cast<double>(count);
     }
-    if (auto ok = refine(editor, criteria, kDepths[round], context, work); !ok) return ok;
+    // What is too large must not stay, whatever else does.
+    const int depth = last ? kDepths[0] : kDepths[round];
+    if (auto ok = refine(editor, criteria, depth, context, work); !ok) return ok;
+    if (last) break;
   }
   if (options.delaunay) return {};  // flips undo what comes now
   SolidSurgery surgery(editor, criteria);
   surgery.keep_size();
   SolidImprover improver(surgery, criteria, context);
-  improver.allow_insertion(std::sin(kInsertionGoalDeg * std::numbers::pi / 180));
-  return improver.mend(goal);
+  const double insertion_deg = std::max(kInsertionGoalDeg, options.min_dihedral_deg);
+  improver.allow_insertion(std::sin(insertion_deg * std::numbers::pi / 180));
+  // What could not be mended may be after its neighbours were.
+  for (int pass = 0; pass < kLastPasses; ++pass) {
+    if (auto ok = improver.mend(goal); !ok) return ok;
+  }
+  return {};
 }
 
 // Counts the exempt by reason and finds the worst shape. A broken size bound must not be handed

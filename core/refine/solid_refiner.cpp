@@ -56,7 +56,11 @@ void SolidRefiner::enqueue(TetId t) {
     if (illegal) queue_.push({kLast, t, tet.version});
     return;
   }
-  const bool exempt = sized <= 1 && criteria_.exemption(mesh_, tet) != SolidExemption::kNone;
+  const SolidExemption exemption =
+      sized > 1 ? SolidExemption::kNone : criteria_.exemption(mesh_, tet);
+  const bool exempt = exemption != SolidExemption::kNone;
+  // Merging mends what is bad at the axis, points do not.
+  if (exempt && (!exempt_too_ || exemption == SolidExemption::kAxis)) return;
   // Shape before size, the worst first, but in steps: within one, tetrahedra follow each other as
   // they lie in memory.
   const double key = sized > 1 ? sized : (exempt ? 1e-10 : 1e10) * ratio;

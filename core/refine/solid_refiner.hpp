@@ -57,6 +57,9 @@ class SolidRefiner {
   // well, after all others.
   void treat_illegal() { illegal_too_ = true; }
 
+  // Exempt tetrahedra that are bad are given a point as well, where no edge gets shorter by it.
+  void treat_exempt() { exempt_too_ = true; }
+
   // No points for the sake of shape are added to meshes larger than this.
   void set_most_shaped(std::uint64_t most) { most_shaped_ = most; }
   // The run ends with kElementLimit where the mesh gets larger than this.
@@ -129,6 +132,7 @@ class SolidRefiner {
   std::priority_queue<Entry> queue_;
   int max_depth_ = kMaxChain;
   bool illegal_too_ = false;
+  bool exempt_too_ = false;
   std::uint64_t shape_budget_ = 0;
   std::uint64_t most_shaped_ = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t most_tets_ = std::numeric_limits<std::uint64_t>::max();
