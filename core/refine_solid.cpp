@@ -45,9 +45,14 @@ constexpr int kDepthsDelaunay[] = {2, 2, 3, 3, 4, 4, 6, 6, 8, 8};
 constexpr std::uint64_t kMostGrowth = 4;
 constexpr std::uint64_t kLeastGrowth = 2'000;
 
+// For the sake of shape no edge gets shorter than this share of the shortest one of the first mesh,
+// whatever the runs: into spikes of the input they would shrink without end.
+constexpr double kLeastDistance = 1.0 / 256;
+
 struct Work {
   std::uint64_t most_shaped = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t most_tets = 0;
+  double least_distance = 0;
   bool exempt_too = false;   // in later runs: most of what is bad at first is mended without
   bool illegal_too = false;  // what is not Delaunay is refined like what is bad
   SolidRefineCounters refined;
@@ -59,6 +64,14 @@ double total_volume(const SolidEditor& editor) {
     if (editor.mesh().alive(t)) sum += editor.measures(t).volume;
   }
   return sum;
+}
+
+double shortest_edge(const SolidEditor& editor) {
+  double least2 = std::numeric_limits<double>::infinity();
+  for (TetId t = 0; t < editor.mesh().tet_slots(); ++t) {
+    if (editor.mesh().alive(t)) least2 = std::min(least2, editor.measures(t).shortest2);
+  }
+  return std::sqrt(least2);
 }
 
 std::size_t count_bad(const SolidEditor& editor, const SolidCriteria& criteria) {
@@ -98,6 +111,7 @@ Result<void> refine(SolidEditor& editor,
   SolidRefiner refiner(editor, criteria, context);
   refiner.set_most_tets(work.most_tets);
   refiner.set_most_shaped(work.most_shaped);
+  refiner.set_least_distance(work.least_distance);
   refiner.set_max_depth(depth);
   if (work.illegal_too) refiner.treat_illegal();
   if (work.exempt_too) refiner.treat_exempt();
@@ -213,8 +227,12 @@ Result<void> refine_alone(SolidEditor& editor,
     if (!work.illegal_too && count_bad(editor, criteria) == 0) return {};
     if (auto ok = refine(editor, criteria, depth, context, work); !ok) return ok;
   }
-  const auto flips = legalise(editor, context);
-  return flips ? Result<void>{} : tl::unexpected<Error>(flips.error());
+  if (const auto flips = legalise(editor, context); !flips) {
+    return tl::unexpected<Error>(flips.error());
+  }
+  // Flips know of no bound; where the two cannot be had together, the bounds are kept.
+  if (count_bad(editor, criteria) == 0) return {};
+  return refine(editor, criteria, kDepthsDelaunay[0], context, work);
 }
 
 Statistics::Refinement count_work(const SolidEditor& editor, const SolidRefineCounters& refined) {
@@ -254,6 +272,7 @@ Result<RefinedSolid> refine_solid(InitialTetrahedralization solid,
   }
   Work work;
   work.most_tets = most_tets;
+  work.least_distance = kLeastDistance * shortest_edge(editor);
   if (!options.plain) {
     auto ok = refine(editor, criteria, kDepths[0], context, work);
     if (ok) ok = improve(editor, criteria, options, context, work);

@@ -365,7 +365,7 @@ constexpr auto kRows = std::to_array<OptionRow>({
          kSolids}),
     bound_row<&MeshOptions::max_edge>({"max_edge", "L", "", "longest edge, in model units", kAll}),
     flag_row<&MeshOptions::delaunay>(
-        {"delaunay", "", "", "solids: keep the mesh Delaunay, no improvement beyond it", kSolids}),
+        {"delaunay", "", "", "solids: a Delaunay mesh, at worse dihedral angles", kSolids}),
     {{"order", "1|2", "1", "1: linear elements; 2: quadratic, with mid-side nodes", kAll},
      set_order,
      get_member<&MeshOptions::order>},

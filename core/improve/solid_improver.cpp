@@ -6,7 +6,7 @@
 namespace symcell {
 namespace {
 
-constexpr std::uint64_t kCheckEvery = 256;
+constexpr std::uint64_t kCheckEvery = 64;
 // Bound on the steps of one round, a tetrahedron: two operations cannot undo each other (each
 // betters the worst), but a round need not go on for what little is left.
 constexpr std::uint64_t kMaxStepsATet = 4;

@@ -31,7 +31,7 @@ struct MeshOptions {
   double radius_edge = 1.414;               // solids: circumradius / shortest edge
   double max_volume = kInfinity;            // solids; input units cubed
   double min_dihedral_deg = 0;              // solids: a goal of the improvement, not a promise
-  bool delaunay = false;                    // solids: keep the mesh Delaunay, no improvement beyond
+  bool delaunay = false;                    // solids: end with a Delaunay mesh
   double max_edge = kInfinity;              // input units
   std::int32_t order = 1;                   // 1: linear, 2: quadratic with mid-side nodes
   std::uint64_t max_elements = 50'000'000;  // of the cell

@@ -125,7 +125,7 @@ SolidRefiner::Cause SolidRefiner::cause_of(TetId t) const {
   Cause cause;
   cause.shortest = std::sqrt(m.shortest2);
   cause.size = criteria_.size_excess2(m, tet.region) > 1;
-  cause.exempt = !cause.size && criteria_.exemption(mesh_, tet) != SolidExemption::kNone;
+  cause.spare = !cause.size && criteria_.exemption(mesh_, tet) != SolidExemption::kNone;
   cause.least = cause.size ? kSizeShare * std::cbrt(std::abs(m.volume)) : 0;
   // The ends of the shortest edge.
   double best = std::numeric_limits<double>::infinity();
@@ -152,8 +152,8 @@ bool SolidRefiner::allowed(const Cavity& cavity, const Cause& cause, double shar
   }
   if (cause.size) return nearest >= cause.least;
   if (shape_budget_ == 0 || mesh_.tet_count() > most_shaped_) return false;
-  if (nearest < share * cause.shortest) return false;
-  return nearest >= cause.shortest || (cause.depth < max_depth_ && !cause.exempt);
+  if (nearest < std::max(least_distance_, share * cause.shortest)) return false;
+  return nearest >= cause.shortest || (cause.depth < max_depth_ && !cause.spare);
 }
 
 SolidRefiner::Outcome SolidRefiner::insert(const Cavity& cavity,

@@ -62,6 +62,8 @@ class SolidRefiner {
 
   // No points for the sake of shape are added to meshes larger than this.
   void set_most_shaped(std::uint64_t most) { most_shaped_ = most; }
+  // For the sake of shape no point comes nearer to a vertex than this.
+  void set_least_distance(double least) { least_distance_ = least; }
   // The run ends with kElementLimit where the mesh gets larger than this.
   void set_most_tets(std::uint64_t most) { most_tets_ = most; }
 
@@ -78,7 +80,7 @@ class SolidRefiner {
     double shortest = 0;  // edge of the bad tetrahedron
     double least = 0;     // no vertex may be nearer to the new point than this, size aside
     bool size = false;    // because of volume or edge length
-    bool exempt = false;  // the input excuses it: no edge may get shorter for its sake
+    bool spare = false;   // excused by the input: no edge may get shorter for its sake
     std::uint8_t depth = 0;
   };
   struct Entry {
@@ -136,6 +138,7 @@ class SolidRefiner {
   std::uint64_t shape_budget_ = 0;
   std::uint64_t most_shaped_ = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t most_tets_ = std::numeric_limits<std::uint64_t>::max();
+  double least_distance_ = 0;
   std::vector<std::uint8_t> depth_;  // per vertex
   Cavity cavity_;
   SolidRefineCounters counters_;

@@ -13,6 +13,7 @@
 #include "core/geometry/point_tree.hpp"
 #include "core/geometry/predicates_3.hpp"
 #include "core/model/validate_plc.hpp"
+#include "core/refine/tet_measures.hpp"
 
 namespace symcell {
 namespace {
@@ -21,6 +22,7 @@ constexpr double kPlaceTolerance = 1e-9;    // of the model's diameter
 constexpr double kCoincidence = 1e-10;      // likewise
 constexpr double kMeasureTolerance = 1e-9;  // relative
 constexpr double kQualityTolerance = 1e-6;  // relative
+constexpr double kSphereTolerance = 1e-6;   // of the radius squared
 
 using FaceKey = std::array<std::int64_t, 3>;
 
@@ -53,6 +55,7 @@ class SolidLaws {
     check_coincidence();
     check_model();
     check_quality();
+    check_delaunay();
     check_figures();
     return std::move(broken_);
   }
@@ -351,16 +354,41 @@ class SolidLaws {
     }
     // Where the axis is inside and sectors are narrow, whole cells are.
     const bool narrow = model_.axis_inside && cell_.fold > 6;
-    if (options_.delaunay && !options_.plain && !model_.acute && !narrow &&
-        !outcome_.statistics.delaunay) {
-      broken("delaunay: asked for, and not so");
-    }
     if (!model_.acute && !narrow && bad > cell_.element_count() / 5 + 10) {
       std::string reasons;
       for (const ExemptCount& e : outcome_.statistics.exempt) {
         reasons += " " + e.reason + " " + std::to_string(e.elements);
       }
       broken("quality: ", bad, " of ", cell_.element_count(), " elements are exempt:", reasons);
+    }
+  }
+
+  // If it is told to be so, every face that is on no facet is locally Delaunay.
+  void check_delaunay() {
+    if (!outcome_.statistics.delaunay) return;
+    const std::set<FaceKey> facets = [&] {
+      std::set<FaceKey> sorted;
+      for (FaceKey key : boundary_) {
+        std::sort(key.begin(), key.end());
+        sorted.insert(key);
+      }
+      return sorted;
+    }();
+    std::map<FaceKey, std::pair<std::size_t, std::int64_t>> other;  // element, its fourth corner
+    for (std::size_t t = 0; t < tets_.size(); ++t) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        FaceKey key{tets_[t][(i + 1) % 4], tets_[t][(i + 2) % 4], tets_[t][(i + 3) % 4]};
+        std::sort(key.begin(), key.end());
+        const auto [found, first] = other.try_emplace(key, t, tets_[t][i]);
+        if (first || facets.contains(key)) continue;
+        const auto& v = tets_[t];
+        const TetMeasures m = measure_tet(at(v[0]), at(v[1]), at(v[2]), at(v[3]));
+        const double inside = squared_distance(at(found->second.second), m.centre) / m.radius2;
+        if (inside >= 1 - kSphereTolerance) continue;
+        broken("delaunay: told, and element ", found->second.first, " reaches into the sphere of ",
+               t);
+        return;
+      }
     }
   }
 
