@@ -22,8 +22,9 @@ class InsertionCavity {
   InsertionCavity(SolidEditor& editor, const SolidCriteria& criteria)
       : editor_(editor), mesh_(editor.mesh()), criteria_(criteria) {}
 
-  // True if a star was found whose worst shape is above `wanted`, with all bounds kept: best() is
-  // its cavity, with the point in place.
+  // True if a star was found whose worst shape is above `wanted`: best() is its cavity, with the
+  // point in place. Broken bounds count as poor shapes; whether they are kept is the caller's to
+  // look at.
   [[nodiscard]] bool search(TetId t, double wanted);
   [[nodiscard]] const Cavity& best() const { return best_; }
 

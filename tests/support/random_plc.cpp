@@ -12,9 +12,6 @@
 namespace symcell::test {
 namespace {
 
-// Dihedral angles below this excuse elements from the ratio: models that have such are not blunt.
-constexpr double kSharp = 70 * std::numbers::pi / 180;
-
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
@@ -337,24 +334,13 @@ class Maker {
       facet({{belt[i], belt[j], top}}, 1 + static_cast<std::int32_t>(i) % m);
       facet({{belt[j], belt[i], bottom}}, 11 + static_cast<std::int32_t>(i) % m);
     }
-    // Where the belt's edges are farthest from the axis they are sharpest.
-    double reach = 0;
-    for (std::size_t i = 0; i < belt.size(); ++i) {
-      const Point3 a = plc().vertices[at(belt[i])];
-      const Point3 u = plc().vertices[at(belt[(i + 1) % belt.size()])] - a;
-      reach = std::max(reach, length(a - (dot(a, u) / dot(u, u)) * u));
-    }
-    const double above = std::atan2(up, reach), below = std::atan2(down, reach);
-    double sharpest = above + below;
     if (chance(0.3)) {  // an inner floor that divides the two halves
-      sharpest = std::min(above, below);
       facet({belt}, 50);
       plc().regions.push_back({{0, 0, 0.5 * up}, 1});
       plc().regions.push_back({{0, 0, -0.5 * down}, 2});
       result_.plain_surface = false;
       result_.description += "divided ";
     }
-    if (sharpest < kSharp) result_.acute = true;
     result_.volume = outer.area() * (up + down) / 3;
     result_.axis_inside = true;
     result_.description += "bipyramid";
