@@ -13,8 +13,8 @@ namespace {
 constexpr double kFacingCosine = 0.7;
 constexpr double kThinFacingCosine = 0.1;
 constexpr double kThinDeviations = 2;
-// Points of a new triangle that are looked at: a grid with this many steps a side.
-constexpr int kGridSteps = 3;
+// Points on a new side that are looked at, by their shares of the way.
+constexpr double kSideShares[] = {1.0 / 3, 2.0 / 3};
 
 }  // namespace
 
@@ -50,23 +50,33 @@ void DeviationGuard::renumber(const std::vector<std::int32_t>& old) {
   renumbered.reserve(old.size());
   for (const std::int32_t t : old) renumbered.push_back(std::move(of_triangle_[t]));
   of_triangle_ = std::move(renumbered);
+  std::vector<std::int32_t> hints;
+  hints.reserve(old.size());
+  for (const std::int32_t t : old) hints.push_back(hint_of(t));
+  hints_ = std::move(hints);
+}
+
+std::int32_t& DeviationGuard::hint_of(std::int32_t triangle) {
+  const auto needed = static_cast<std::size_t>(triangle) + 1;
+  if (hints_.size() < needed) hints_.resize(needed, -1);
+  return hints_[triangle];
 }
 
 // By three points that integrate quadratic heights exactly.
-double DeviationGuard::mean_height(const std::array<Point3, 3>& points) const {
+double DeviationGuard::mean_height(std::int32_t triangle, const std::array<Point3, 3>& points) {
   const Point3 n = area_normal(points[0], points[1], points[2]);
   const Point3 sum = points[0] + points[1] + points[2];
   double heights = 0;
   for (const Point3& corner : points) {
     const Point3 p = (1.0 / 6) * sum + 0.5 * corner;
-    const auto hit = tree_.nearest(p, 2 * most_);
+    const auto hit = tree_.nearest(p, 2 * most_, hint_of(triangle));
     if (hit.triangle < 0 || dot(normals_[hit.triangle], n) <= 0) continue;
     heights += dot(n, hit.point - p);
   }
   return heights / (3 * length(n));
 }
 
-bool DeviationGuard::lies_on_old_surface(const PlannedTriangle& triangle) const {
+bool DeviationGuard::lies_on_old_surface(const PlannedTriangle& triangle) {
   const auto& [a, b, c] = triangle.points;
   const Point3 n = area_normal(a, b, c);
   const double twice = length(n);
@@ -76,15 +86,15 @@ bool DeviationGuard::lies_on_old_surface(const PlannedTriangle& triangle) const 
   const double facing =
       (twice < kThinDeviations * most_ * longest ? kThinFacingCosine : kFacingCosine) * twice;
   const Point3 centre = (1.0 / 3) * (a + b + c);
-  const auto hit = tree_.nearest(centre, most_);
+  std::int32_t& hint = hint_of(triangle.id);
+  const auto hit = tree_.nearest(centre, most_, hint);
   if (hit.triangle < 0 || dot(normals_[hit.triangle], n) < facing) return false;
-  std::int32_t last = -1;
-  for (int i = 0; i <= kGridSteps; ++i) {
-    for (int j = 0; i + j <= kGridSteps; ++j) {
-      const int k = kGridSteps - i - j;
-      if (i == kGridSteps || j == kGridSteps || k == kGridSteps) continue;
-      const Point3 p = (1.0 / kGridSteps) * (i * a + j * b + static_cast<double>(k) * c);
-      if (!tree_.within(p, most_, last)) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    // A new side is met once from either triangle; one that is not new was looked at before.
+    if (triangle.corners[i].orbit < triangle.corners[(i + 1) % 3].orbit) continue;
+    const Point3 from = triangle.points[i], way = triangle.points[(i + 1) % 3] - from;
+    for (const double share : kSideShares) {
+      if (!tree_.within(from + share * way, most_, hint)) return false;
     }
   }
   return true;

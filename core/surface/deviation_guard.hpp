@@ -34,8 +34,8 @@ class DeviationGuard {
   // Triangle `t` had the number old[t] before.
   void renumber(const std::vector<std::int32_t>& old);
 
-  // Mean height of the old surface over a triangle.
-  [[nodiscard]] double mean_height(const std::array<Point3, 3>& points) const;
+  // Mean height of the old surface over triangle `triangle` with these corners.
+  [[nodiscard]] double mean_height(std::int32_t triangle, const std::array<Point3, 3>& points);
 
   // The point of the old surface nearest to p, if it is near.
   [[nodiscard]] TriangleTree::Hit nearest(Point3 p, double reach) const {
@@ -43,7 +43,8 @@ class DeviationGuard {
   }
 
  private:
-  [[nodiscard]] bool lies_on_old_surface(const PlannedTriangle& triangle) const;
+  [[nodiscard]] bool lies_on_old_surface(const PlannedTriangle& triangle);
+  [[nodiscard]] std::int32_t& hint_of(std::int32_t triangle);
   [[nodiscard]] bool answers(std::span<const std::int32_t> gone,
                              std::span<const PlannedTriangle> planned,
                              double reach);
@@ -52,8 +53,8 @@ class DeviationGuard {
   TriangleTree tree_;
   std::vector<Point3> normals_;  // of the old triangles, as the input had them
   std::vector<Point3> samples_;
-  std::vector<double> areas_;                           // that samples stand for; 0 for corners
   std::vector<std::vector<std::int32_t>> of_triangle_;  // samples each triangle answers for
+  std::vector<std::int32_t> hints_;  // where in the tree each triangle was found last
   std::vector<std::pair<std::int32_t, std::int32_t>> answers_;  // sample, index in `planned`
 };
 

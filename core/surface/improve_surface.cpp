@@ -423,7 +423,7 @@ class Improver {
     heights_.assign(s.triangles.size(), 0);
     for (std::size_t t = 0; t < s.triangles.size(); ++t) {
       const auto id = static_cast<std::int32_t>(t);
-      if (mesh_.alive(id) && !planar(id)) heights_[t] = guard_.mean_height(mesh_.points(id));
+      if (mesh_.alive(id) && !planar(id)) heights_[t] = guard_.mean_height(id, mesh_.points(id));
     }
     for (std::size_t i = 0; i < s.points.size(); ++i) {
       if (i % kCheckEvery == 0) {

@@ -1,6 +1,7 @@
 #include "core/surface/indexed_surface.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 
 namespace symcell {
@@ -32,18 +33,34 @@ double enclosed_volume(const IndexedSurface& surface, Point3 origin) {
 }
 
 std::vector<EdgeUse> sorted_edge_uses(std::span<const Triangle> triangles) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(3 * triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::int32_t a = triangles[t][i];
-      const std::int32_t b = triangles[t][(i + 1) % 3];
-      uses.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(t), a < b});
+  // By lower end first: those of one are few and sorted at once.
+  std::vector<std::size_t> end_of(1, 0);
+  const auto visit = [triangles](const auto& use) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::int32_t a = triangles[t][i];
+        const std::int32_t b = triangles[t][(i + 1) % 3];
+        use(EdgeUse{std::min(a, b), std::max(a, b), static_cast<std::int32_t>(t), a < b});
+      }
     }
-  }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& x, const EdgeUse& y) {
-    return std::tie(x.low, x.high, x.triangle) < std::tie(y.low, y.high, y.triangle);
+  };
+  visit([&](const EdgeUse& use) {
+    const auto low = static_cast<std::size_t>(use.low);
+    if (end_of.size() <= low) end_of.resize(low + 1, 0);
+    ++end_of[low];
   });
+  std::exclusive_scan(end_of.begin(), end_of.end(), end_of.begin(), std::size_t{0});
+  std::vector<EdgeUse> uses(3 * triangles.size());
+  visit([&](const EdgeUse& use) { uses[end_of[static_cast<std::size_t>(use.low)]++] = use; });
+  std::size_t begin = 0;
+  for (const std::size_t end : end_of) {
+    std::sort(uses.begin() + static_cast<std::ptrdiff_t>(begin),
+              uses.begin() + static_cast<std::ptrdiff_t>(end),
+              [](const EdgeUse& x, const EdgeUse& y) {
+                return std::tie(x.high, x.triangle) < std::tie(y.high, y.triangle);
+              });
+    begin = end;
+  }
   return uses;
 }
 

@@ -1,22 +1,32 @@
 #include "core/surface/self_intersections.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "core/surface/triangle_tree.hpp"
 
 namespace symcell {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using P = Kernel::Point_3;
-using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::int32_t>;
+
+// Of two cross products' dot product, relative to the lengths that enter: some 20 roundings of 2^-53.
+constexpr double kFoldedRounding = 1e-14;
 
 P cgal_point(const Point3& p) {
   return {p.x, p.y, p.z};
 }
 
-struct Stop {};
+// Whether a and b lie on different sides of line pq, whatever the rounding: seen along the line, at an
+// obtuse angle.
+bool surely_apart(const Point3& p, const Point3& q, const Point3& a, const Point3& b) {
+  const Point3 u = q - p, v = a - p, w = b - p;
+  return dot(cross(u, v), cross(u, w)) <
+         -kFoldedRounding * dot(u, u) * std::sqrt(dot(v, v) * dot(w, w));
+}
 
 class PairTest {
  public:
@@ -49,9 +59,10 @@ class PairTest {
   }
 
  private:
-  [[nodiscard]] P corner(std::int32_t t, int i) const {
-    return cgal_point(surface_.points[surface_.triangles[t][i]]);
+  [[nodiscard]] const Point3& point(std::int32_t t, int i) const {
+    return surface_.points[surface_.triangles[t][i]];
   }
+  [[nodiscard]] P corner(std::int32_t t, int i) const { return cgal_point(point(t, i)); }
   [[nodiscard]] Kernel::Triangle_3 triangle(std::int32_t t) const {
     return {corner(t, 0), corner(t, 1), corner(t, 2)};
   }
@@ -60,6 +71,10 @@ class PairTest {
   }
   // A common side: the triangles overlap only if they lie in one plane on one side of it.
   [[nodiscard]] bool folded(std::int32_t s, int apex_s, std::int32_t t, int apex_t) const {
+    if (surely_apart(point(s, (apex_s + 1) % 3), point(s, (apex_s + 2) % 3), point(s, apex_s),
+                     point(t, apex_t))) {
+      return false;
+    }
     const P p = corner(s, (apex_s + 1) % 3), q = corner(s, (apex_s + 2) % 3);
     const P a = corner(s, apex_s), b = corner(t, apex_t);
     return CGAL::orientation(p, q, a, b) == CGAL::COPLANAR &&
@@ -74,32 +89,29 @@ class PairTest {
 Result<std::vector<std::pair<std::int32_t, std::int32_t>>> self_intersections(
     const IndexedSurface& surface, std::size_t limit, ExecutionContext& context) {
   const PairTest test(surface);
-  std::vector<Box> boxes;
-  boxes.reserve(surface.triangles.size());
+  std::vector<Triangle> triangles;
+  std::vector<std::int32_t> ids;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     const auto id = static_cast<std::int32_t>(t);
     if (test.degenerate(id)) continue;
-    CGAL::Bbox_3 box;
-    for (const std::int32_t v : surface.triangles[t]) box += cgal_point(surface.points[v]).bbox();
-    boxes.emplace_back(box, id);
+    triangles.push_back(surface.triangles[t]);
+    ids.push_back(id);
   }
   std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
   std::uint64_t looked_at = 0;
   Result<void> state;
-  try {
-    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
-      constexpr std::uint64_t kCheckEvery = 4096;
-      if (++looked_at % kCheckEvery == 0) {
-        state = context.check();
-        if (!state) throw Stop{};
-      }
-      if (!test.intersect(a.info(), b.info())) return;
-      pairs.emplace_back(std::min(a.info(), b.info()), std::max(a.info(), b.info()));
-      if (pairs.size() >= limit) throw Stop{};
-    });
-  } catch (const Stop&) {
-    if (!state) return tl::unexpected<Error>(state.error());
-  }
+  const TriangleTree tree(surface.points, triangles);
+  tree.visit_meeting_boxes([&](std::int32_t a, std::int32_t b) {
+    constexpr std::uint64_t kCheckEvery = 4096;
+    if (++looked_at % kCheckEvery == 0) {
+      state = context.check();
+      if (!state) return true;
+    }
+    const auto [low, high] = std::minmax(ids[a], ids[b]);
+    if (test.intersect(low, high)) pairs.emplace_back(low, high);
+    return pairs.size() >= limit;
+  });
+  if (!state) return tl::unexpected<Error>(state.error());
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

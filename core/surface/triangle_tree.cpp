@@ -2,19 +2,25 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace symcell {
 namespace {
 
-constexpr std::int32_t kLeafSize = 4;
+constexpr std::size_t kLeafSize = 4;
 // Halving 2^31 items ends well before; a stack of twice the depth is never full.
 constexpr std::size_t kStackSize = 128;
 
-double squared_distance_to_box(Point3 p, Point3 low, Point3 high) {
-  const double dx = std::max({low.x - p.x, 0.0, p.x - high.x});
-  const double dy = std::max({low.y - p.y, 0.0, p.y - high.y});
-  const double dz = std::max({low.z - p.z, 0.0, p.z - high.z});
+inline double squared_distance_to_box(Point3 p, const Point3& low, const Point3& high) {
+  const double dx = std::max(std::max(low.x - p.x, p.x - high.x), 0.0);
+  const double dy = std::max(std::max(low.y - p.y, p.y - high.y), 0.0);
+  const double dz = std::max(std::max(low.z - p.z, p.z - high.z), 0.0);
   return dx * dx + dy * dy + dz * dz;
+}
+
+bool meet(const Point3& low, const Point3& high, const Point3& low2, const Point3& high2) {
+  return low.x <= high2.x && low2.x <= high.x && low.y <= high2.y && low2.y <= high.y &&
+         low.z <= high2.z && low2.z <= high.z;
 }
 
 }  // namespace
@@ -44,76 +50,95 @@ Point3 closest_point(Point3 p, Point3 a, Point3 b, Point3 c) {
 }
 
 TriangleTree::TriangleTree(std::span<const Point3> points, std::span<const Triangle> triangles) {
-  items_.reserve(triangles.size());
+  if (triangles.empty()) return;
+  std::vector<Centroid> order;
+  order.reserve(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const Triangle& v = triangles[t];
-    items_.push_back({points[v[0]], points[v[1]], points[v[2]], static_cast<std::int32_t>(t)});
+    const Point3 s = points[v[0]] + points[v[1]] + points[v[2]];
+    order.push_back({{s.x, s.y, s.z}, static_cast<std::int32_t>(t)});
   }
-  nodes_.reserve(items_.size());
-  if (!items_.empty()) build(0, static_cast<std::int32_t>(items_.size()));
+  items_.reserve(triangles.size());
+  nodes_.reserve(triangles.size());
+  build(order, [&](std::int32_t t) {
+    const Triangle& v = triangles[static_cast<std::size_t>(t)];
+    return Item{points[v[0]], points[v[1]], points[v[2]], t};
+  });
 }
 
-std::int32_t TriangleTree::build(std::int32_t begin, std::int32_t end) {
+// Halves are built from left to right, so items come to lie in the order of their leaves.
+template <class MakeItem>
+std::int32_t TriangleTree::build(std::span<Centroid> order, const MakeItem& item) {
   const auto id = static_cast<std::int32_t>(nodes_.size());
   nodes_.emplace_back();
-  Point3 low = items_[begin].a, high = low;
-  Point3 centre_low{1e300, 1e300, 1e300}, centre_high{-1e300, -1e300, -1e300};
-  for (std::int32_t i = begin; i < end; ++i) {
-    const Item& item = items_[i];
-    for (const Point3& p : {item.a, item.b, item.c}) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  if (order.size() <= kLeafSize) {
+    Node& leaf = nodes_[id];
+    leaf.begin = static_cast<std::int32_t>(items_.size());
+    leaf.count = static_cast<std::int32_t>(order.size());
+    std::array<Point3, 3 * kLeafSize> corners;
+    std::size_t count = 0;
+    for (const Centroid& c : order) {
+      items_.push_back(item(c.triangle));
+      items_.back().leaf = id;
+      for (const Point3& p : {items_.back().a, items_.back().b, items_.back().c}) {
+        corners[count++] = p;
+      }
     }
-    const Point3 s = item.a + item.b + item.c;
-    centre_low = {std::min(centre_low.x, s.x), std::min(centre_low.y, s.y),
-                  std::min(centre_low.z, s.z)};
-    centre_high = {std::max(centre_high.x, s.x), std::max(centre_high.y, s.y),
-                   std::max(centre_high.z, s.z)};
-  }
-  nodes_[id].low = low;
-  nodes_[id].high = high;
-  if (end - begin <= kLeafSize) {
-    nodes_[id].begin = begin;
-    nodes_[id].count = end - begin;
+    const Box3 box = bounding_box(std::span(corners).first(count));
+    leaf.low = box.low;
+    leaf.high = box.high;
     return id;
   }
-  const Point3 size = centre_high - centre_low;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-  const auto key = [axis](const Item& item) {
-    if (axis == 0) return item.a.x + item.b.x + item.c.x;
-    if (axis == 1) return item.a.y + item.b.y + item.c.y;
-    return item.a.z + item.b.z + item.c.z;
-  };
-  const std::int32_t middle = begin + (end - begin) / 2;
-  std::nth_element(items_.begin() + begin, items_.begin() + middle, items_.begin() + end,
-                   [&key](const Item& x, const Item& y) {
-                     const double kx = key(x), ky = key(y);
-                     return kx != ky ? kx < ky : x.triangle < y.triangle;
+  std::array<double, 3> low = order.front().sum, high = low;
+  for (const Centroid& c : order) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], c.sum[i]);
+      high[i] = std::max(high[i], c.sum[i]);
+    }
+  }
+  std::size_t axis = 0;
+  for (const std::size_t i : {1, 2}) {
+    if (high[i] - low[i] > high[axis] - low[axis]) axis = i;
+  }
+  const std::size_t half = order.size() / 2;
+  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(half), order.end(),
+                   [axis](const Centroid& x, const Centroid& y) {
+                     return x.sum[axis] != y.sum[axis] ? x.sum[axis] < y.sum[axis]
+                                                       : x.triangle < y.triangle;
                    });
-  build(begin, middle);
-  const std::int32_t right = build(middle, end);
+  const std::int32_t left = build(order.first(half), item);
+  const std::int32_t right = build(order.subspan(half), item);
+  nodes_[left].parent = nodes_[right].parent = id;
   nodes_[id].begin = right;
+  const std::array<Point3, 4> ends = {nodes_[left].low, nodes_[left].high, nodes_[right].low,
+                                      nodes_[right].high};
+  const Box3 box = bounding_box(ends);
+  nodes_[id].low = box.low;
+  nodes_[id].high = box.high;
   return id;
 }
 
-// Calls visit(item) for items in boxes nearer than the reach; visit returns true to stop.
+// Calls visit(item) for items in boxes nearer than the reach, the nearer box first; visit returns
+// true to stop, which is returned.
 template <class Visit>
-void TriangleTree::search(Point3 p, double& squared_reach, const Visit& visit) const {
-  if (nodes_.empty()) return;
+bool TriangleTree::search_below(std::int32_t root,
+                                Point3 p,
+                                double& squared_reach,
+                                const Visit& visit) const {
   struct Pending {
     std::int32_t node;
     double squared;
   };
   std::array<Pending, kStackSize> stack;
   std::size_t depth = 0;
-  stack[depth++] = {0, squared_distance_to_box(p, nodes_[0].low, nodes_[0].high)};
+  stack[depth++] = {root, squared_distance_to_box(p, nodes_[root].low, nodes_[root].high)};
   while (depth > 0) {
     const Pending next = stack[--depth];
     if (next.squared > squared_reach) continue;
     const Node& node = nodes_[next.node];
     if (node.count > 0) {
       for (std::int32_t i = node.begin; i < node.begin + node.count; ++i) {
-        if (visit(items_[i])) return;
+        if (visit(items_[i])) return true;
       }
       continue;
     }
@@ -121,12 +146,30 @@ void TriangleTree::search(Point3 p, double& squared_reach, const Visit& visit) c
     const double to_left = squared_distance_to_box(p, nodes_[left].low, nodes_[left].high);
     const double to_right = squared_distance_to_box(p, nodes_[right].low, nodes_[right].high);
     if (to_left <= to_right) {
-      stack[depth++] = {right, to_right};
+      if (to_right <= squared_reach) stack[depth++] = {right, to_right};
       stack[depth++] = {left, to_left};
     } else {
-      stack[depth++] = {left, to_left};
+      if (to_left <= squared_reach) stack[depth++] = {left, to_left};
       stack[depth++] = {right, to_right};
     }
+  }
+  return false;
+}
+
+// From the leaf of item `last` up to the root, and from each node on the way down into its sibling;
+// from the root if `last` is negative.
+template <class Visit>
+void TriangleTree::search(Point3 p,
+                          double& squared_reach,
+                          std::int32_t last,
+                          const Visit& visit) const {
+  if (nodes_.empty()) return;
+  std::int32_t node = last < 0 ? 0 : items_[last].leaf;
+  if (search_below(node, p, squared_reach, visit)) return;
+  for (std::int32_t up = nodes_[node].parent; up >= 0; up = nodes_[node].parent) {
+    const std::int32_t sibling = node == up + 1 ? nodes_[up].begin : up + 1;
+    if (search_below(sibling, p, squared_reach, visit)) return;
+    node = up;
   }
 }
 
@@ -145,7 +188,7 @@ TriangleTree::Hit TriangleTree::nearest(Point3 p, double reach, std::int32_t& la
     return false;
   };
   if (last >= 0) static_cast<void>(look(items_[last]));
-  search(p, squared_reach, look);
+  search(p, squared_reach, last, look);
   return hit;
 }
 
@@ -154,14 +197,57 @@ bool TriangleTree::within(Point3 p, double reach, std::int32_t& last) const {
   double squared_reach = reach * reach;
   const auto look = [&](const Item& item) {
     found = squared_distance(p, closest_point(p, item.a, item.b, item.c)) <= squared_reach;
+    if (found) last = static_cast<std::int32_t>(&item - items_.data());
     return found;
   };
   if (last >= 0 && look(items_[last])) return true;
-  search(p, squared_reach, [&](const Item& item) {
-    if (look(item)) last = static_cast<std::int32_t>(&item - items_.data());
-    return found;
-  });
+  search(p, squared_reach, last, look);
   return found;
+}
+
+void TriangleTree::visit_meeting_boxes(
+    const std::function<bool(std::int32_t, std::int32_t)>& visit) const {
+  if (nodes_.empty()) return;
+  std::vector<Box3> boxes;
+  boxes.reserve(items_.size());
+  for (const Item& item : items_) {
+    const std::array<Point3, 3> corners = {item.a, item.b, item.c};
+    boxes.push_back(bounding_box(corners));
+  }
+  const auto items_meet = [&](std::int32_t i, std::int32_t j) {
+    return meet(boxes[i].low, boxes[i].high, boxes[j].low, boxes[j].high) &&
+           visit(items_[i].triangle, items_[j].triangle);
+  };
+  // Pairs of nodes whose boxes meet; a node with itself stands for the pairs within it.
+  std::vector<std::pair<std::int32_t, std::int32_t>> pending{{0, 0}};
+  const auto add = [&](std::int32_t a, std::int32_t b) {
+    if (meet(nodes_[a].low, nodes_[a].high, nodes_[b].low, nodes_[b].high)) {
+      pending.emplace_back(a, b);
+    }
+  };
+  while (!pending.empty()) {
+    const auto [a, b] = pending.back();
+    pending.pop_back();
+    const Node& na = nodes_[a];
+    const Node& nb = nodes_[b];
+    if (na.count > 0 && nb.count > 0) {
+      for (std::int32_t i = na.begin; i < na.begin + na.count; ++i) {
+        for (std::int32_t j = a == b ? i + 1 : nb.begin; j < nb.begin + nb.count; ++j) {
+          if (items_meet(i, j)) return;
+        }
+      }
+    } else if (a == b) {
+      pending.emplace_back(a + 1, a + 1);
+      pending.emplace_back(na.begin, na.begin);
+      add(a + 1, na.begin);
+    } else if (na.count > 0 || (nb.count == 0 && distance(na.low, na.high) < distance(nb.low, nb.high))) {
+      add(a, b + 1);
+      add(a, nb.begin);
+    } else {
+      add(a + 1, b);
+      add(na.begin, b);
+    }
+  }
 }
 
 }  // namespace symcell

@@ -31,6 +31,26 @@ Triangle rotated_to_smallest(const Triangle& t) {
   return t;
 }
 
+// Per point: the first one at the same place.
+std::vector<std::int32_t> first_of_equals(const std::vector<Point3>& points) {
+  struct Place {
+    Point3 p;
+    std::int32_t index;
+  };
+  std::vector<Place> places;
+  places.reserve(points.size());
+  for (const Point3& p : points) places.push_back({p, static_cast<std::int32_t>(places.size())});
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return a.p == b.p ? a.index < b.index : lexicographic(a.p, b.p);
+  });
+  std::vector<std::int32_t> first(points.size());
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const bool same = k > 0 && places[k].p == places[k - 1].p;
+    first[places[k].index] = same ? first[places[k - 1].index] : places[k].index;
+  }
+  return first;
+}
+
 // `group[i]`: any label of the cluster of point i; clusters are numbered by first use.
 IndexedSurface merge_points(const IndexedSurface& surface, const std::vector<std::int32_t>& group) {
   IndexedSurface merged;
@@ -77,18 +97,7 @@ IndexedSurface weld_exactly(const TriangleSurface& surface) {
     all.source.resize(all.triangles.size());
     std::iota(all.source.begin(), all.source.end(), 0);
   }
-  std::vector<std::int32_t> order(all.points.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) {
-    const Point3 &p = all.points[i], &q = all.points[j];
-    return p == q ? i < j : lexicographic(p, q);
-  });
-  std::vector<std::int32_t> group(all.points.size());
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool same = k > 0 && all.points[order[k]] == all.points[order[k - 1]];
-    group[order[k]] = same ? group[order[k - 1]] : order[k];
-  }
-  IndexedSurface merged = merge_points(all, group);
+  IndexedSurface merged = merge_points(all, first_of_equals(all.points));
   drop_unused_points(merged);
   return merged;
 }

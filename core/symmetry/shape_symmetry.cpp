@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "core/base/random.hpp"
+#include "core/geometry/spatial_order.hpp"
 
 namespace symcell {
 namespace {
@@ -92,30 +94,50 @@ void ShapeSymmetry::choose_samples() {
   for (std::size_t i = 0; i < kFitSamples; ++i) telling_.push_back(i);
 }
 
+// Each near the one before, so that a search can begin where the last one ended.
+std::vector<Point3> ShapeSymmetry::samples_for(std::int32_t fold) const {
+  const std::size_t samples =
+      std::max(kLeastSamples, kMostDistances / static_cast<std::size_t>(fold));
+  const auto first = [](const std::vector<Point3>& points, std::size_t count) {
+    return std::span<const Point3>(points).first(std::min(points.size(), count));
+  };
+  const auto vertices = first(vertices_, samples), spread = first(spread_, samples / 4);
+  std::vector<Point3> chosen(vertices.begin(), vertices.end());
+  chosen.insert(chosen.end(), spread.begin(), spread.end());
+  sort_along_hilbert_curve(chosen);
+  return chosen;
+}
+
 Result<ShapeError> ShapeSymmetry::turn_error(const SymmetryAxis& axis,
+                                             std::int32_t steps,
+                                             std::int32_t fold,
+                                             double enough,
+                                             ExecutionContext& context) const {
+  return turn_error(samples_for(fold), axis, steps, fold, enough, context);
+}
+
+Result<ShapeError> ShapeSymmetry::turn_error(std::span<const Point3> samples,
+                                             const SymmetryAxis& axis,
                                              std::int32_t steps,
                                              std::int32_t fold,
                                              double enough,
                                              ExecutionContext& context) const {
   ShapeError worst;
   worst.steps = steps;
-  const std::size_t samples =
-      std::max(kLeastSamples, kMostDistances / static_cast<std::size_t>(fold));
-  const std::size_t vertices = std::min(vertices_.size(), samples);
-  const std::size_t spread = std::min(spread_.size(), samples / 4);
   const double angle = 2 * std::numbers::pi * steps / fold;
   const double c = std::cos(angle), s = std::sin(angle);
-  for (std::size_t i = 0; i < vertices + spread; ++i) {
+  std::int32_t last = -1;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
     if (i % kCheckEvery == 0) {
       if (auto state = context.check(); !state) return tl::unexpected<Error>(state.error());
     }
-    const Point3 p = i < vertices ? vertices_[i] : spread_[i - vertices];
-    const Point3 q = axis.origin + rotate_about(axis.direction, c, s, p - axis.origin);
-    if (worst.distance > 0 && tree_.within(q, worst.distance)) continue;
-    const double distance = std::sqrt(tree_.nearest(q, diameter_).squared);
+    const Point3 q =
+        axis.origin + rotate_about(axis.direction, c, s, samples[i] - axis.origin);
+    if (worst.distance > 0 && tree_.within(q, worst.distance, last)) continue;
+    const double distance = std::sqrt(tree_.nearest(q, diameter_, last).squared);
     if (distance <= worst.distance) continue;
     worst.distance = std::min(distance, diameter_);
-    worst.worst = p;
+    worst.worst = samples[i];
     if (worst.distance > enough) break;
   }
   return worst;
@@ -125,9 +147,10 @@ Result<ShapeError> ShapeSymmetry::error(const SymmetryAxis& axis,
                                         std::int32_t fold,
                                         double enough,
                                         ExecutionContext& context) const {
+  const std::vector<Point3> samples = samples_for(fold);
   ShapeError worst;
   for (std::int32_t k = 1; k < fold && worst.distance <= enough; ++k) {
-    auto turn = turn_error(axis, k, fold, enough, context);
+    auto turn = turn_error(samples, axis, k, fold, enough, context);
     if (!turn) return turn;
     if (turn->distance > worst.distance || worst.steps == 0) worst = *turn;
   }

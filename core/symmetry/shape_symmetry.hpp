@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -66,6 +67,13 @@ class ShapeSymmetry {
 
  private:
   void choose_samples();
+  [[nodiscard]] std::vector<Point3> samples_for(std::int32_t fold) const;
+  [[nodiscard]] Result<ShapeError> turn_error(std::span<const Point3> samples,
+                                              const SymmetryAxis& axis,
+                                              std::int32_t steps,
+                                              std::int32_t fold,
+                                              double enough,
+                                              ExecutionContext& context) const;
 
   const IndexedSurface& surface_;
   double diameter_;

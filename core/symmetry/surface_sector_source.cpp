@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/random.hpp"
+#include "core/geometry/spatial_order.hpp"
 #include "core/model/describe.hpp"
 #include "core/surface/improve_surface.hpp"
 #include "core/surface/planar_patches.hpp"
@@ -70,6 +71,18 @@ IndexedSurface restored_sector(const QuotientSurface& s) {
     flat.triangles.push_back(corners);
   }
   return flat;
+}
+
+// Corners and middles of the triangles, near ones after each other.
+std::vector<Point3> samples_of(const IndexedSurface& surface) {
+  std::vector<Point3> samples = surface.points;
+  samples.reserve(samples.size() + surface.triangles.size());
+  for (const Triangle& t : surface.triangles) {
+    samples.push_back((1.0 / 3) *
+                      (surface.points[t[0]] + surface.points[t[1]] + surface.points[t[2]]));
+  }
+  sort_along_hilbert_curve(samples);
+  return samples;
 }
 
 struct PatchFigures {
@@ -161,6 +174,7 @@ SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean,
   }
   noise_ = std::max(kSinglePrecision * largest, kLeastNoiseRel * symmetry_.diameter);
   tree_ = TriangleTree(full_.points, full_.triangles);
+  samples_ = samples_of(full_);
   choose_candidates();
 }
 
@@ -215,19 +229,22 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
     if (auto done = improve_surface(improved, share * tolerance_, flatness, context); !done) {
       return tl::unexpected<Error>(done.error());
     }
-    if (auto same = check_shape(improved, context); !same) {
-      if (auto state = context.check(); !state) return tl::unexpected<Error>(state.error());
-      // A cut that is off before anything is improved is off at every share.
-      if (last.message.empty() && !check_shape(given, context)) return tl::unexpected(same.error());
-      last = same.error();
-      continue;
-    }
     const SectorShape shape = shape_of(improved);
+    ++taken;
     if (!best || shape.better_than(*best)) {
+      if (auto same = check_shape(improved, context); !same) {
+        if (auto state = context.check(); !state) return tl::unexpected<Error>(state.error());
+        // A cut that is off before anything is improved is off at every share.
+        if (last.message.empty() && !check_shape(given, context)) {
+          return tl::unexpected(same.error());
+        }
+        last = same.error();
+        --taken;
+        continue;
+      }
       surface = std::move(improved);
       best = shape;
     }
-    ++taken;
     if (!best->many_thin() && (best->narrow == 0 || taken >= kEnoughTaken)) break;
   }
   if (!best) return tl::unexpected<Error>(last);
@@ -254,28 +271,27 @@ Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
                                                   ExecutionContext& context) const {
   const RotationTable rotations(symmetry_.fold);
   const auto failure = fail(ErrorCode::kInternal, "the sector is too far from the surface");
+  const std::vector<Point3> samples = samples_of(sector);
   IndexedSurface all;
+  std::int32_t last = -1;
   for (std::int32_t k = 0; k < symmetry_.fold; ++k) {
     if (auto state = context.check(); !state) return state;
+    for (const Point3& p : samples) {
+      if (!tree_.within(rotations.rotate(p, k), tolerance_, last)) return failure;
+    }
     const auto first = static_cast<std::int32_t>(all.points.size());
     for (const Point3& p : sector.points) all.points.push_back(rotations.rotate(p, k));
     for (const Triangle& t : sector.triangles) {
       all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     }
   }
-  if (!all_near(all, tree_)) return failure;
   if (auto state = context.check(); !state) return state;
-  return all_near(full_, TriangleTree(all.points, all.triangles)) ? Result<void>{} : failure;
-}
-
-bool SurfaceSectorSource::all_near(const IndexedSurface& surface, const TriangleTree& tree) const {
-  std::int32_t last = -1;
-  const auto near = [&](Point3 p) { return tree.within(p, tolerance_, last); };
-  return std::all_of(surface.points.begin(), surface.points.end(), near) &&
-         std::all_of(surface.triangles.begin(), surface.triangles.end(), [&](const Triangle& t) {
-           return near((1.0 / 3) *
-                       (surface.points[t[0]] + surface.points[t[1]] + surface.points[t[2]]));
-         });
+  const TriangleTree copies(all.points, all.triangles);
+  last = -1;
+  const bool near = std::all_of(samples_.begin(), samples_.end(), [&](const Point3& p) {
+    return copies.within(p, tolerance_, last);
+  });
+  return near ? Result<void>{} : failure;
 }
 
 Result<SolidSector> SurfaceSectorSource::sector(std::int32_t index,

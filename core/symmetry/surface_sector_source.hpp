@@ -54,15 +54,15 @@ class SurfaceSectorSource final : public SectorSource {
                                          ExecutionContext& context) const;
   [[nodiscard]] Result<void> check_distances(const IndexedSurface& sector,
                                              ExecutionContext& context) const;
-  [[nodiscard]] bool all_near(const IndexedSurface& surface, const TriangleTree& tree) const;
 
   SolidSymmetry symmetry_;
   std::vector<std::string> repairs_;
   double tolerance_;
   double noise_;         // of coordinates
   double volume_;        // of the input
-  IndexedSurface full_;  // local frame
-  TriangleTree tree_;    // of full_
+  IndexedSurface full_;          // local frame
+  TriangleTree tree_;            // of full_
+  std::vector<Point3> samples_;  // of full_
   std::vector<Candidate> candidates_;
 };
 

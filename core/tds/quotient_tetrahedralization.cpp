@@ -7,12 +7,10 @@
 #include <utility>
 
 #include "core/base/assert.hpp"
-#include "core/tds/spatial_order.hpp"
+#include "core/geometry/spatial_order.hpp"
 
 namespace symcell {
 namespace {
-
-constexpr double kFar = std::numeric_limits<double>::infinity();
 
 std::uint64_t hash(const FaceKey& key) {
   std::uint64_t x = key.high + 0x9e3779b97f4a7c15ULL * (key.low + 1);
@@ -332,12 +330,10 @@ std::uint32_t QuotientTetrahedralization::new_epoch() {
 
 // By the place of centroids along a space-filling curve, all in one sector whatever their frames.
 std::vector<TetId> QuotientTetrahedralization::spatial_order() const {
-  struct Place {
-    std::uint64_t key;
-    TetId t;
-  };
-  std::vector<Point3> centres(tets_.size());
-  Point3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
+  std::vector<TetId> living;
+  std::vector<Point3> centres;
+  living.reserve(live_tets_);
+  centres.reserve(live_tets_);
   const double sector = 2 * std::numbers::pi / fold();
   for (TetId t = 0; t < tets_.size(); ++t) {
     if (!alive(t)) continue;
@@ -347,27 +343,12 @@ std::vector<TetId> QuotientTetrahedralization::spatial_order() const {
       const auto turns = static_cast<std::int32_t>(std::floor(std::atan2(c.y, c.x) / sector));
       c = rotations_.rotate(c, rotations_.reduce(-turns));
     }
-    centres[t] = c;
-    low = {std::min(low.x, c.x), std::min(low.y, c.y), std::min(low.z, c.z)};
-    high = {std::max(high.x, c.x), std::max(high.y, c.y), std::max(high.z, c.z)};
+    living.push_back(t);
+    centres.push_back(c);
   }
-  const Point3 extent = high - low;
-  const double size = std::max({extent.x, extent.y, extent.z});
-  const double scale = size > 0 ? (1U << kHilbertBits) / size : 0;
-  const auto cell = [&](double x) { return static_cast<std::uint32_t>(std::max(0.0, x * scale)); };
-  std::vector<Place> places;
-  places.reserve(live_tets_);
-  for (TetId t = 0; t < tets_.size(); ++t) {
-    if (!alive(t)) continue;
-    const Point3 c = centres[t] - low;
-    places.push_back({hilbert_place(cell(c.x), cell(c.y), cell(c.z)), t});
-  }
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
-    return a.key != b.key ? a.key < b.key : a.t < b.t;
-  });
   std::vector<TetId> order;
-  order.reserve(places.size());
-  for (const Place& p : places) order.push_back(p.t);
+  order.reserve(living.size());
+  for (const std::size_t i : hilbert_order(centres)) order.push_back(living[i]);
   return order;
 }
 

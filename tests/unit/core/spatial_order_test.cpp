@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "core/tds/spatial_order.hpp"
+#include "core/geometry/spatial_order.hpp"
 #include "tests/unit/core/solid_checks.hpp"
 
 namespace symcell {
