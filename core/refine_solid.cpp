@@ -163,10 +163,7 @@ Result<void> improve(SolidEditor& editor,
   const double insertion_deg = std::max(kInsertionGoalDeg, options.min_dihedral_deg);
   improver.allow_insertion(std::sin(insertion_deg * std::numbers::pi / 180));
   // What could not be mended may be after its neighbours were.
-  for (int pass = 0; pass < kLastPasses; ++pass) {
-    if (auto ok = improver.mend(goal); !ok) return ok;
-  }
-  return {};
+  return improver.mend(goal, kLastPasses);
 }
 
 // Counts the exempt by reason and finds the worst shape. A broken size bound must not be handed
@@ -283,13 +280,14 @@ Result<RefinedSolid> refine_solid(InitialTetrahedralization solid,
     if (!ok) return tl::unexpected<Error>(ok.error());
   }
   result.refinement = count_work(editor, work.refined);
+  editor.compact();  // what follows goes from neighbour to neighbour
   const auto report = validate_tetrahedra(mesh, ValidationLevel::kEmbedding, volume);
   if (!report) return tl::unexpected<Error>(report.error());
   result.delaunay = count_illegal(editor) == 0;
   if (auto ok = count_exempt(editor, criteria, result); !ok) {
     return tl::unexpected<Error>(ok.error());
   }
-  mesh.compact();
+  mesh.compact_vertices();
   return result;
 }
 

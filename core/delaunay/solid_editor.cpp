@@ -43,6 +43,13 @@ void SolidEditor::remeasure_all() {
   }
 }
 
+void SolidEditor::compact() {
+  std::vector<TetMeasures> measures;
+  measures.reserve(mesh_.tet_count());
+  for (const TetId old : mesh_.compact_tets()) measures.push_back(measures_[old]);
+  measures_ = std::move(measures);
+}
+
 bool SolidEditor::replace(std::span<const TetCopy> removed,
                           std::span<const NewTet> added,
                           QuotientTetrahedralization::Outline outline) {

@@ -103,10 +103,7 @@ class SolidEditor {
     ++mesh_.tet(t).version;
   }
   // Tetrahedra near one another come to lie near one another in memory; vertices keep their ids.
-  void compact() {
-    mesh_.compact_tets();
-    remeasure_all();
-  }
+  void compact();
 
   void count_flip() { ++counters_.flips; }
   void count_collapse() { ++counters_.collapses; }

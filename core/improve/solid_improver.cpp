@@ -42,13 +42,14 @@ double SolidImprover::key(TetId t) const {
   return ratio > 1 ? -ratio : surgery_.shape(t);
 }
 
-bool SolidImprover::improve(TetId t) {
+bool SolidImprover::improve(TetId t, Means means) {
   for (const auto& e : kEdgeCorners) {
     if (surgery_.remove_edge(t, e[0], e[1])) return true;
   }
   for (std::uint32_t i = 0; i < 4; ++i) {
     if (surgery_.remove_face(t, i)) return true;
   }
+  if (means == Means::kFlips) return false;
   for (std::uint32_t i = 0; i < 4; ++i) {
     if (surgery_.smooth(mesh_.tet(t).v[i])) return true;
   }
@@ -61,11 +62,11 @@ bool SolidImprover::improve(TetId t) {
   return shape < insertion_goal_ && surgery_.insert_point(t);
 }
 
-Result<void> SolidImprover::mend(double goal) {
+Result<void> SolidImprover::work_on_worst(double goal, Means means) {
   queue_ = {};
   const auto enqueue = [&](TetId t) {
     const double k = key(t);
-    if (k < goal) queue_.push({k, t, mesh_.tet(t).version});
+    if (k < goal && !is_hopeless(t)) queue_.push({k, t, mesh_.tet(t).version});
   };
   for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
     if (mesh_.alive(t)) enqueue(t);
@@ -78,8 +79,45 @@ Result<void> SolidImprover::mend(double goal) {
     const Entry e = queue_.top();
     queue_.pop();
     if (!mesh_.alive(e.t) || mesh_.tet(e.t).version != e.version) continue;
-    if (!improve(e.t)) continue;
+    ++steps_;
+    if (!improve(e.t, means)) {
+      if (means == Means::kAll) {
+        given_up_.resize(std::max(given_up_.size(), mesh_.tet_slots()));
+        given_up_[e.t] = {e.version, steps_};
+      }
+      continue;
+    }
+    note_changes();
     for (const TetId t : surgery_.touched()) enqueue(t);
+  }
+  return {};
+}
+
+void SolidImprover::note_changes() {
+  changed_.resize(std::max(changed_.size(), mesh_.vertex_slots()), 0);
+  for (const TetId t : surgery_.touched()) {
+    for (const VertexId v : mesh_.tet(t).v) changed_[static_cast<std::size_t>(v)] = steps_;
+  }
+}
+
+// Given up, and nothing at its corners has changed since.
+bool SolidImprover::is_hopeless(TetId t) const {
+  if (t >= given_up_.size()) return false;
+  const GivenUp& given_up = given_up_[t];
+  const Tet& tet = mesh_.tet(t);
+  return given_up.when > 0 && given_up.version == tet.version &&
+         std::all_of(tet.v, tet.v + 4, [&](VertexId v) {
+           const auto i = static_cast<std::size_t>(v);
+           return i >= changed_.size() || changed_[i] < given_up.when;
+         });
+}
+
+Result<void> SolidImprover::mend(double goal, int passes) {
+  given_up_.clear();
+  for (int pass = 0; pass < passes; ++pass) {
+    const std::uint64_t before = surgery_.edits();
+    if (auto ok = work_on_worst(goal, Means::kAll); !ok) return ok;
+    if (surgery_.edits() == before) break;
   }
   return {};
 }
@@ -166,7 +204,8 @@ Result<void> SolidImprover::coarsen(double floor) {
 }
 
 Result<void> SolidImprover::round(double goal) {
-  if (auto ok = mend(goal); !ok) return ok;
+  // Flips alone: merges change most of the rest, and moves before them are wasted.
+  if (auto ok = work_on_worst(goal, Means::kFlips); !ok) return ok;
   surgery_.allow_excess(kCoarseningExcess);
   if (auto ok = coarsen(goal); !ok) return ok;
   surgery_.allow_excess(1);

@@ -18,7 +18,7 @@ class SolidImprover {
  public:
   SolidImprover(SolidSurgery& surgery, const SolidCriteria& criteria, ExecutionContext& context);
 
-  // Mends, coarsens, smooths and mends again; some tetrahedra may break bounds a little afterwards.
+  // Flips, coarsens, smooths and mends; some tetrahedra may break bounds a little afterwards.
   // `goal`: sine of the dihedral angle below which a tetrahedron is worked on.
   // Errors: kTimeLimit, kCancelled, kElementLimit.
   [[nodiscard]] Result<void> round(double goal);
@@ -29,8 +29,9 @@ class SolidImprover {
 
   // Merges what can go; `floor`: least sine that collapses may leave.
   [[nodiscard]] Result<void> coarsen(double floor);
-  // Works on tetrahedra whose shape is below `goal` or that break a bound until nothing helps.
-  [[nodiscard]] Result<void> mend(double goal);
+  // Works on tetrahedra whose shape is below `goal` or that break a bound, each until nothing
+  // helps; in further passes on those whose neighbourhood has changed since they were given up.
+  [[nodiscard]] Result<void> mend(double goal, int passes = 1);
   // From now on mend() inserts vertices where nothing else helps a tetrahedron below `goal`.
   void allow_insertion(double goal) { insertion_goal_ = goal; }
   // Moves every vertex once.
@@ -45,10 +46,18 @@ class SolidImprover {
       return a.key != b.key ? a.key > b.key : a.t > b.t;
     }
   };
+  enum class Means { kFlips, kAll };
+  struct GivenUp {
+    std::uint32_t version = 0;
+    std::uint64_t when = 0;  // 0: never
+  };
+  [[nodiscard]] Result<void> work_on_worst(double goal, Means means);
+  [[nodiscard]] bool is_hopeless(TetId t) const;
+  void note_changes();
   [[nodiscard]] std::vector<VertexId> vertices_in_order() const;
   [[nodiscard]] bool merge(VertexId v, double floor, SolidSurgery::Bounds bounds);
   [[nodiscard]] double key(TetId t) const;
-  [[nodiscard]] bool improve(TetId t);
+  [[nodiscard]] bool improve(TetId t, Means means);
 
   SolidSurgery& surgery_;
   QuotientTetrahedralization& mesh_;
@@ -56,6 +65,10 @@ class SolidImprover {
   ExecutionContext& context_;
   std::priority_queue<Entry> queue_;
   double insertion_goal_ = -1;
+  // By steps of this improver: when a tetrahedron was given up, when one at a vertex last changed.
+  std::uint64_t steps_ = 0;
+  std::vector<GivenUp> given_up_;
+  std::vector<std::uint64_t> changed_;
   std::vector<TetCopy> star_;
   std::vector<SolidSurgery::Neighbour> targets_;
 };

@@ -39,6 +39,8 @@ class SolidSurgery {
 
   // Of the tetrahedra that an operation made or changed.
   [[nodiscard]] std::span<const TetId> touched() const { return touched_; }
+  // Operations that changed something so far.
+  [[nodiscard]] std::uint64_t edits() const { return edits_; }
 
   // Removes the edge between corners i and j of t.
   [[nodiscard]] bool remove_edge(TetId t, std::uint32_t i, std::uint32_t j);

@@ -352,8 +352,8 @@ std::vector<TetId> QuotientTetrahedralization::spatial_order() const {
   return order;
 }
 
-void QuotientTetrahedralization::compact_tets() {
-  const std::vector<TetId> order = spatial_order();
+std::vector<TetId> QuotientTetrahedralization::compact_tets() {
+  std::vector<TetId> order = spatial_order();
   std::vector<TetId> place(tets_.size(), 0);
   for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<TetId>(i);
   std::vector<Tet> tets;
@@ -370,10 +370,10 @@ void QuotientTetrahedralization::compact_tets() {
   tets_ = std::move(tets);
   free_tets_.clear();
   epoch_ = 0;
+  return order;
 }
 
-std::vector<VertexId> QuotientTetrahedralization::compact() {
-  compact_tets();
+std::vector<VertexId> QuotientTetrahedralization::compact_vertices() {
   std::vector<VertexId> new_vertex(vertices_.size(), -1);
   std::vector<Vertex> vertices;
   for (Tet& t : tets_) {

@@ -192,10 +192,14 @@ class QuotientTetrahedralization {
   // Next visit mark for Tet::stamp.
   std::uint32_t new_epoch();
 
-  // Rewrites the slots of tetrahedra without gaps, near ones near each other.
-  void compact_tets();
-  // Those of vertices as well. Old vertex id -> new one (-1: was deleted).
-  std::vector<VertexId> compact();
+  // Rewrites the slots of tetrahedra without gaps, near ones near each other. New id -> old one.
+  std::vector<TetId> compact_tets();
+  // Rewrites those of vertices, in the order of the tetrahedra. Old id -> new one (-1: was deleted).
+  std::vector<VertexId> compact_vertices();
+  std::vector<VertexId> compact() {
+    compact_tets();
+    return compact_vertices();
+  }
 
  private:
   struct Vertex {

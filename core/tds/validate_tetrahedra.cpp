@@ -227,20 +227,69 @@ class Checker {
         const Corner b = mesh_.corner(t, kEdgeCorners[e][1]);
         ring.clear();
         const bool closed = mesh_.ring({t, 0}, a, b, ring);
-        double sum = 0;
         for (const TetCopy& c : ring) {
-          const std::uint32_t local = local_edge(c, a, b);
-          done[c.t] = static_cast<std::uint8_t>(done[c.t] | 1U << local);
-          sum += dihedral(c.t, kEdgeCorners[local][0], kEdgeCorners[local][1]);
+          done[c.t] = static_cast<std::uint8_t>(done[c.t] | 1U << local_edge(c, a, b));
         }
         const bool axis = mesh_.on_axis(a.v) && mesh_.on_axis(b.v);
-        const double turn = 2 * std::numbers::pi / (axis ? static_cast<double>(mesh_.fold()) : 1.0);
-        const bool ok =
-            closed ? std::abs(sum - turn) < kAngleSlack * turn : sum < (1 + kAngleSlack) * turn;
+        const bool ok = closed && !axis ? turns_once(ring, a, b) : adds_up(ring, a, b, closed);
         if (!ok) return broken("embedding", t, e, "dihedral angles do not make one turn");
       }
       return {};
     });
+  }
+
+  // Each tetrahedron turns by less than half a turn, all the same way, so a closed ring passes from
+  // below to above a plane through the edge once a turn; signs of a vertex are the same in both of
+  // its tetrahedra, whatever their rounding.
+  [[nodiscard]] bool turns_once(const std::vector<TetCopy>& ring, Corner a, Corner b) const {
+    const Point3 from = mesh_.lift(a), along = mesh_.lift(b) - from;
+    Point3 up;
+    int passes = 0;
+    for (const TetCopy& c : ring) {
+      std::array<std::uint32_t, 2> o = opposite_ends(c, a, b);
+      const Point3 p = mesh_.lift(mesh_.corner(c, o[0])) - from;
+      const Point3 q = mesh_.lift(mesh_.corner(c, o[1])) - from;
+      if (up == Point3{}) up = cross(along, p + q);
+      passes += dot(up, p) < 0 && dot(up, q) >= 0 ? 1 : 0;
+    }
+    return passes == 1;
+  }
+
+  // The corners off edge ab, as they follow each other round it.
+  [[nodiscard]] std::array<std::uint32_t, 2> opposite_ends(TetCopy c, Corner a, Corner b) const {
+    std::array<std::uint32_t, 4> order{};  // a, b, the others
+    std::size_t others = 2;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const Corner x = mesh_.corner(c, i);
+      if (x == a) {
+        order[0] = i;
+      } else if (x == b) {
+        order[1] = i;
+      } else if (others < 4) {
+        order[others++] = i;
+      }
+    }
+    bool even = true;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) even = even == (order[i] < order[j]);
+    }
+    if (even) return {order[2], order[3]};
+    return {order[3], order[2]};
+  }
+
+  // An open ring stays below a turn, one about the axis makes the sector's angle.
+  [[nodiscard]] bool adds_up(const std::vector<TetCopy>& ring,
+                             Corner a,
+                             Corner b,
+                             bool closed) const {
+    double sum = 0;
+    for (const TetCopy& c : ring) {
+      const std::uint32_t e = local_edge(c, a, b);
+      sum += dihedral(c.t, kEdgeCorners[e][0], kEdgeCorners[e][1]);
+    }
+    const bool axis = mesh_.on_axis(a.v) && mesh_.on_axis(b.v);
+    const double turn = 2 * std::numbers::pi / (axis ? static_cast<double>(mesh_.fold()) : 1.0);
+    return closed ? std::abs(sum - turn) < kAngleSlack * turn : sum < (1 + kAngleSlack) * turn;
   }
 
   [[nodiscard]] std::uint32_t local_edge(TetCopy c, Corner a, Corner b) const {
