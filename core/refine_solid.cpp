@@ -27,7 +27,7 @@ constexpr int kLastPasses = 3;
 // round, full or not.
 constexpr std::size_t kRounds = 3;
 constexpr std::size_t kRoundsIfLarge = 2;
-constexpr std::size_t kLargeCell = 8'000;
+constexpr std::size_t kLargeCell = 5'000;
 // Bad tetrahedra that are mended without a full round.
 constexpr std::size_t kFewBad = 10;
 constexpr double kFewBadShare = 5e-4;
