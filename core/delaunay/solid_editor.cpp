@@ -43,6 +43,19 @@ void SolidEditor::remeasure_all() {
   }
 }
 
+void SolidEditor::begin_trial() {
+  mesh_.begin_trial();
+  counters_before_ = counters_;
+}
+
+std::vector<TetId> SolidEditor::take_back_trial() {
+  std::vector<TetId> written = mesh_.take_back_trial();
+  std::erase_if(written, [&](TetId t) { return !mesh_.alive(t); });
+  for (const TetId t : written) measures_[t] = measure(t);
+  counters_ = counters_before_;
+  return written;
+}
+
 void SolidEditor::compact() {
   std::vector<TetMeasures> measures;
   measures.reserve(mesh_.tet_count());
@@ -427,9 +440,9 @@ VertexId SolidEditor::insert(const Cavity& cavity,
   }
   const std::int32_t segment = split ? mesh_.segment_of(edge[0], edge[1]) : kNoSegment;
   if (segment != kNoSegment) {
-    mesh_.edges().erase(mesh_.edge_key(edge[0], edge[1]));
-    mesh_.edges().set(mesh_.edge_key(edge[0], {p, 0}), segment);
-    mesh_.edges().set(mesh_.edge_key({p, 0}, edge[1]), segment);
+    mesh_.set_segment(mesh_.edge_key(edge[0], edge[1]), kNoSegment);
+    mesh_.set_segment(mesh_.edge_key(edge[0], {p, 0}), segment);
+    mesh_.set_segment(mesh_.edge_key({p, 0}, edge[1]), segment);
   }
   ++counters_.insertions;
   return p;

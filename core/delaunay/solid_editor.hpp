@@ -100,8 +100,12 @@ class SolidEditor {
   // After a vertex moved.
   void remeasure(TetId t) {
     measures_[t] = measure(t);
-    ++mesh_.tet(t).version;
+    mesh_.bump_version(t);
   }
+  // As of the mesh; returns the tetrahedra that are as they were again.
+  void begin_trial();
+  void keep_trial() { mesh_.keep_trial(); }
+  std::vector<TetId> take_back_trial();
   // Tetrahedra near one another come to lie near one another in memory; vertices keep their ids.
   void compact();
 
@@ -139,6 +143,7 @@ class SolidEditor {
   QuotientTetrahedralization& mesh_;
   std::vector<TetMeasures> measures_;
   SolidEditCounters counters_;
+  SolidEditCounters counters_before_;  // the trial
 
   // Scratch.
   std::uint32_t epoch_ = 0;

@@ -51,7 +51,7 @@ bool SolidSurgery::plan_collapse(Corner goes, Corner stays, Collapse& plan) {
 }
 
 bool SolidSurgery::may_shrink(double volume, double limit, std::size_t left) const {
-  return volume <= kMaxFilling * limit * static_cast<double>(left);
+  return lenient_ || volume <= kMaxFilling * limit * static_cast<double>(left);
 }
 
 // Whether what is left of the star, drawn to a place for the vertex that stays, is good enough.
@@ -85,9 +85,9 @@ bool SolidSurgery::do_collapse(const Collapse& plan) {
   const bool on_segment = plan.kind == SolidVertexKind::kSegment;
   if (!apply(star_, new_tets_, on_segment ? Outline::kChanged : Outline::kKept)) return false;
   if (on_segment) {
-    mesh_.edges().erase(mesh_.edge_key(plan.goes, plan.stays));
-    mesh_.edges().erase(mesh_.edge_key(plan.goes, plan.behind));
-    mesh_.edges().set(mesh_.edge_key(plan.stays, plan.behind), plan.segment);
+    mesh_.set_segment(mesh_.edge_key(plan.goes, plan.stays), kNoSegment);
+    mesh_.set_segment(mesh_.edge_key(plan.goes, plan.behind), kNoSegment);
+    mesh_.set_segment(mesh_.edge_key(plan.stays, plan.behind), plan.segment);
   }
   mesh_.release_vertex(plan.goes.v);
   editor_.count_collapse();
@@ -107,6 +107,7 @@ bool SolidSurgery::merge(VertexId goes, Corner stays, double floor, Bounds bound
 }
 
 SolidSurgery::Worth SolidSurgery::merge_limits(double floor, const Worth& before) const {
+  if (lenient_) return {kOpeningShape, kFar, kFar};
   return {std::max(kLeastShape, std::min(floor, before.shape * (1 + kGain))),
           std::max(allowed_excess_, before.excess * (1 - kExcessGain)),
           std::max(allowed_excess_, before.exempt * (1 - kExcessGain))};

@@ -17,8 +17,6 @@ constexpr std::size_t kMergeTargets = 6;
 // neighbours, and refinement mends the little that is left. Measured on the corpus at volume/40000:
 // 1 gives 12 % more tetrahedra, 1.3 some 2 % less for half as much time again.
 constexpr double kCoarseningExcess = 1.2;
-// Bounds that must be kept come before what the input excuses.
-constexpr double kMustBeKept = 1e12;
 // Least shapes that merging a vertex of the cut may leave, tried in turn: flat tetrahedra are
 // mended by refinement and improvement more easily than a needless vertex.
 constexpr double kCutFloors[] = {0.1, 0.02, 0.002};
@@ -31,7 +29,6 @@ SolidImprover::SolidImprover(SolidSurgery& surgery,
     : surgery_(surgery), mesh_(surgery.editor().mesh()), criteria_(criteria), context_(context) {
 }
 
-// Broken bounds come before poor shapes.
 double SolidImprover::key(TetId t) const {
   const Tet& tet = mesh_.tet(t);
   const bool exempt = criteria_.exemption(mesh_, tet) != SolidExemption::kNone;
@@ -53,13 +50,13 @@ bool SolidImprover::improve(TetId t, Means means) {
   for (std::uint32_t i = 0; i < 4; ++i) {
     if (surgery_.smooth(mesh_.tet(t).v[i])) return true;
   }
-  const double shape = surgery_.shape(t);
+  const double floor = surgery_.shape(t) * (1 + kGain);
   for (std::uint32_t i = 0; i < 4; ++i) {
     for (std::uint32_t j = 0; j < 4; ++j) {
-      if (i != j && surgery_.collapse(t, i, j, shape * (1 + kGain))) return true;
+      if (i != j && surgery_.collapse(t, i, j, floor)) return true;
     }
   }
-  return shape < insertion_goal_ && surgery_.insert_point(t);
+  return false;
 }
 
 Result<void> SolidImprover::work_on_worst(double goal, Means means) {
@@ -80,7 +77,7 @@ Result<void> SolidImprover::work_on_worst(double goal, Means means) {
     queue_.pop();
     if (!mesh_.alive(e.t) || mesh_.tet(e.t).version != e.version) continue;
     ++steps_;
-    if (!improve(e.t, means)) {
+    if (!change(e.t, means)) {
       if (means == Means::kAll) {
         given_up_.resize(std::max(given_up_.size(), mesh_.tet_slots()));
         given_up_[e.t] = {e.version, steps_};
@@ -88,14 +85,25 @@ Result<void> SolidImprover::work_on_worst(double goal, Means means) {
       continue;
     }
     note_changes();
-    for (const TetId t : surgery_.touched()) enqueue(t);
+    for (const TetId t : touched_) enqueue(t);
   }
   return {};
 }
 
+bool SolidImprover::change(TetId t, Means means) {
+  const auto once = [&](bool done) {
+    if (done) touched_.assign(surgery_.touched().begin(), surgery_.touched().end());
+    return done;
+  };
+  if (once(improve(t, means))) return true;
+  if (means == Means::kFlips) return false;
+  if (key(t) < detour_goal_ && detour(t)) return true;
+  return surgery_.shape(t) < insertion_goal_ && once(surgery_.insert_point(t));
+}
+
 void SolidImprover::note_changes() {
   changed_.resize(std::max(changed_.size(), mesh_.vertex_slots()), 0);
-  for (const TetId t : surgery_.touched()) {
+  for (const TetId t : touched_) {
     for (const VertexId v : mesh_.tet(t).v) changed_[static_cast<std::size_t>(v)] = steps_;
   }
 }

@@ -34,6 +34,9 @@ class SolidImprover {
   [[nodiscard]] Result<void> mend(double goal, int passes = 1);
   // From now on mend() inserts vertices where nothing else helps a tetrahedron below `goal`.
   void allow_insertion(double goal) { insertion_goal_ = goal; }
+  // And takes detours where a tetrahedron is below `goal`: an operation that makes shapes worse,
+  // then others, if the worst is better in the end.
+  void allow_detours(double goal);
   // Moves every vertex once.
   [[nodiscard]] Result<void> smooth_all();
 
@@ -56,8 +59,16 @@ class SolidImprover {
   void note_changes();
   [[nodiscard]] std::vector<VertexId> vertices_in_order() const;
   [[nodiscard]] bool merge(VertexId v, double floor, SolidSurgery::Bounds bounds);
+  // Low where there is much to mend: broken bounds that must be kept (below -kMustBeKept), then those
+  // that the input excuses (below 0), then poor shapes (their sine).
+  static constexpr double kMustBeKept = 1e12;
   [[nodiscard]] double key(TetId t) const;
+  [[nodiscard]] static bool must_be_mended(double key) { return key <= -kMustBeKept; }
   [[nodiscard]] bool improve(TetId t, Means means);
+  [[nodiscard]] bool change(TetId t, Means means);
+  [[nodiscard]] bool detour(TetId t);
+  [[nodiscard]] bool open_detour(TetId t, std::size_t way);
+  [[nodiscard]] double mend_detour(double goal);
 
   SolidSurgery& surgery_;
   QuotientTetrahedralization& mesh_;
@@ -69,6 +80,9 @@ class SolidImprover {
   std::uint64_t steps_ = 0;
   std::vector<GivenUp> given_up_;
   std::vector<std::uint64_t> changed_;
+  std::vector<TetId> touched_;  // by the last change
+  double detour_goal_ = -1;
+  std::uint64_t detours_left_ = 0;
   std::vector<TetCopy> star_;
   std::vector<SolidSurgery::Neighbour> targets_;
 };

@@ -7,8 +7,6 @@
 namespace symcell {
 namespace {
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
-
 // Stars without a sine below this (25 degrees) and within all bounds are left to the mean:
 // searching on takes a third of the time and makes meshes no smaller.
 constexpr double kGoodShape = 0.42;

@@ -15,10 +15,6 @@ constexpr double kInsertionGain = 1.15;
 // While a bound is broken, shapes may get worse, but not below this sine.
 constexpr double kPoorShape = 0.3;
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
-// Beyond any excess of a radius-edge ratio that is not of a flat tetrahedron.
-constexpr double kOversized = 1e12;
-
 }  // namespace
 
 SolidSurgery::SolidSurgery(SolidEditor& editor, const SolidCriteria& criteria)
@@ -98,8 +94,9 @@ bool SolidSurgery::all_within(std::span<const NewTet> tets,
 }
 
 // Bounds come before shapes, those that must be kept before those that the input excuses from.
-bool SolidSurgery::better(const Worth& now, const Worth& before) {
+bool SolidSurgery::better(const Worth& now, const Worth& before) const {
   if (now.shape <= 0) return false;
+  if (lenient_) return now.shape > kOpeningShape;
   const bool shapelier = now.shape > before.shape * (1 + kGain);
   const auto less = [&](double excess, double old) {
     if (excess > old * (1 - kExcessGain)) return excess <= old && shapelier;
@@ -124,6 +121,14 @@ void SolidSurgery::note_added() {
   if (shapes_.size() < mesh_.tet_slots()) shapes_.resize(mesh_.tet_slots());
   touched_.assign(mesh_.added_ids().begin(), mesh_.added_ids().end());
   for (const TetId t : touched_) {
+    const auto x = editor_.points({t, 0});
+    shapes_[t] = min_dihedral_sine(x[0], x[1], x[2], x[3]);
+  }
+}
+
+void SolidSurgery::take_back_trial() {
+  ++edits_;
+  for (const TetId t : editor_.take_back_trial()) {
     const auto x = editor_.points({t, 0});
     shapes_[t] = min_dihedral_sine(x[0], x[1], x[2], x[3]);
   }
@@ -246,7 +251,7 @@ bool SolidSurgery::remove_edge(TetId t, std::uint32_t i, std::uint32_t j) {
   if (!load_ring(t, i, j)) return false;
   const Ring& r = ring_;
   const Worth before = worth_of(r.tets);
-  const double least = is_broken(before) ? 0 : before.shape;
+  const double least = least_shape(before);
   // Subfacets at the edge: none, or two of one facet.
   const auto m = static_cast<std::uint32_t>(r.corners.size());
   std::array<std::uint32_t, 2> at{};
@@ -313,7 +318,7 @@ bool SolidSurgery::remove_face(TetId t, std::uint32_t i) {
   for (std::size_t j = 0; j < 3; ++j) {
     const Corner p = f[j], q = f[(j + 1) % 3];
     const double shape = min_dihedral_sine(pd, mesh_.lift(p), mesh_.lift(q), pe);
-    if (shape <= (is_broken(before) ? 0 : before.shape)) return false;
+    if (shape <= least_shape(before)) return false;
     NewTet n;
     n.c[0] = d;
     n.c[1] = p;
@@ -329,7 +334,8 @@ bool SolidSurgery::remove_face(TetId t, std::uint32_t i) {
 }
 
 bool SolidSurgery::insert_point(TetId t) {
-  if (!insertion_.search(t, kInsertionGain * shapes_[t])) return false;
+  const double wanted = lenient_ ? kOpeningShape : kInsertionGain * shapes_[t];
+  if (!insertion_.search(t, wanted)) return false;
   const Cavity& cavity = insertion_.best();
   const Worth before = worth_of(cavity.tets);
   Worth now;

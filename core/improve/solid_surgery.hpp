@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -36,6 +37,15 @@ class SolidSurgery {
   void allow_excess(double excess) { allowed_excess_ = excess; }
   // From now on no bound on size is broken for the sake of the ratio: no refinement follows.
   void keep_size() { size_kept_ = true; }
+
+  // Operations as parts of a trial: begin_trial(), some of them, and then they stay or everything is
+  // as it was.
+  void begin_trial() { editor_.begin_trial(); }
+  void keep_trial() { editor_.keep_trial(); }
+  void take_back_trial();
+  // A lenient operation may make shapes worse, down to tetrahedra of some degrees, and break bounds
+  // but those on size: the first of a trial that others mend.
+  void set_lenient(bool lenient) { lenient_ = lenient; }
 
   // Of the tetrahedra that an operation made or changed.
   [[nodiscard]] std::span<const TetId> touched() const { return touched_; }
@@ -75,6 +85,12 @@ class SolidSurgery {
   [[nodiscard]] std::span<const Neighbour> neighbours(VertexId v);
 
  private:
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  // Beyond any excess of a radius-edge ratio that is not of a flat tetrahedron.
+  static constexpr double kOversized = 1e12;
+  // Least sine that a lenient operation may leave: 3 degrees.
+  static constexpr double kOpeningShape = 0.05;
+
   struct Worth {
     double shape = 2;   // the smallest
     double excess = 0;  // the largest, of bounds that must be kept
@@ -100,7 +116,12 @@ class SolidSurgery {
                             bool exempt,
                             const Worth& limits) const;
   [[nodiscard]] bool exempt(const NewTet& t) const;
-  [[nodiscard]] static bool better(const Worth& now, const Worth& before);
+  [[nodiscard]] bool better(const Worth& now, const Worth& before) const;
+  // That edge and face removals must exceed.
+  [[nodiscard]] double least_shape(const Worth& before) const {
+    if (lenient_) return kOpeningShape;
+    return is_broken(before) ? 0 : before.shape;
+  }
   [[nodiscard]] static bool is_broken(const Worth& w) { return w.excess > 1 || w.exempt > 1; }
   using Outline = QuotientTetrahedralization::Outline;
   [[nodiscard]] bool apply(std::span<const TetCopy> removed,
@@ -177,6 +198,7 @@ class SolidSurgery {
   const SolidCriteria& criteria_;
   double allowed_excess_ = 1;
   bool size_kept_ = false;
+  bool lenient_ = false;
   std::vector<double> shapes_;
   std::vector<TetId> touched_;
 

@@ -150,7 +150,7 @@ class Gluer {
         const EdgeKey key = mesh.edge_key(a, b);
         std::int32_t segment = wanted.find(key);
         if (segment < 0 && mesh.on_axis(a.v) && mesh.on_axis(b.v)) segment = axis_segment();
-        if (segment >= 0) mesh.edges().set(key, segment);
+        if (segment >= 0) mesh.set_segment(key, segment);
       }
     }
   }

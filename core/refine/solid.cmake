@@ -6,6 +6,7 @@ target_sources(
           delaunay/solid_legalise.cpp
           improve/insertion_cavity.cpp
           improve/solid_collapse.cpp
+          improve/solid_detours.cpp
           improve/solid_improver.cpp
           improve/solid_moves.cpp
           improve/solid_star.cpp
@@ -18,6 +19,7 @@ set_source_files_properties(
   delaunay/solid_editor.cpp
   improve/insertion_cavity.cpp
   improve/solid_collapse.cpp
+  improve/solid_detours.cpp
   improve/solid_improver.cpp
   improve/solid_moves.cpp
   improve/solid_star.cpp

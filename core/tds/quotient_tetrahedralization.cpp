@@ -19,6 +19,17 @@ std::uint64_t hash(const FaceKey& key) {
   return x ^ (x >> 32);
 }
 
+template <class Id>
+void undo_free(const std::vector<std::optional<Id>>& log, std::vector<Id>& free) {
+  for (auto it = log.rbegin(); it != log.rend(); ++it) {
+    if (*it) {
+      free.push_back(**it);
+    } else {
+      free.pop_back();
+    }
+  }
+}
+
 }  // namespace
 
 VertexId QuotientTetrahedralization::add_vertex(Point3 p,
@@ -33,6 +44,10 @@ VertexId QuotientTetrahedralization::add_vertex(Point3 p,
   if (!free_vertices_.empty()) {
     const VertexId id = free_vertices_.back();
     free_vertices_.pop_back();
+    if (trial_.open) {
+      keep(id);
+      trial_.free_vertices.emplace_back(id);
+    }
     vertices_[idx(id)] = v;
     return id;
   }
@@ -41,6 +56,10 @@ VertexId QuotientTetrahedralization::add_vertex(Point3 p,
 }
 
 void QuotientTetrahedralization::release_vertex(VertexId v) {
+  if (trial_.open) {
+    keep(v);
+    trial_.free_vertices.emplace_back(std::nullopt);
+  }
   vertices_[idx(v)].kind = SolidVertexKind::kDeleted;
   vertices_[idx(v)].tet = std::numeric_limits<TetId>::max();
   free_vertices_.push_back(v);
@@ -51,6 +70,10 @@ TetId QuotientTetrahedralization::take_slot() {
   if (!free_tets_.empty()) {
     const TetId t = free_tets_.back();
     free_tets_.pop_back();
+    if (trial_.open) {
+      keep(t);
+      trial_.free_tets.emplace_back(t);
+    }
     return t;
   }
   tets_.emplace_back();
@@ -60,6 +83,10 @@ TetId QuotientTetrahedralization::take_slot() {
 }
 
 void QuotientTetrahedralization::link(HalfFace h, HalfFace g, std::int32_t off) {
+  if (trial_.open) {
+    keep(tet_of(h));
+    keep(tet_of(g));
+  }
   Tet& a = tets_[tet_of(h)];
   a.nb[face_of(h)] = g;
   a.off[face_of(h)] = static_cast<std::int16_t>(off);
@@ -182,6 +209,10 @@ bool QuotientTetrahedralization::replace(std::span<const TetCopy> removed,
                                          Outline outline) {
   if (!match_faces(removed, added, outline)) return false;
   for (const TetCopy& c : removed) {
+    if (trial_.open) {
+      keep(c.t);
+      trial_.free_tets.emplace_back(std::nullopt);
+    }
     tets_[c.t].region = -1;
     ++tets_[c.t].version;
     --live_tets_;
@@ -197,6 +228,7 @@ bool QuotientTetrahedralization::replace(std::span<const TetCopy> removed,
       t.k[i] = static_cast<std::int16_t>(n.c[i].k);
       t.nb[i] = kNoHalfFace;
       t.off[i] = 0;
+      if (trial_.open) keep(n.c[i].v);
       vertices_[idx(n.c[i].v)].tet = id;
     }
     t.region = n.region;
@@ -217,6 +249,53 @@ bool QuotientTetrahedralization::replace(std::span<const TetCopy> removed,
     }
   }
   return true;
+}
+
+void QuotientTetrahedralization::set_segment(const EdgeKey& edge, std::int32_t segment) {
+  if (trial_.open) trial_.edges.emplace_back(edge, edges_.find(edge));
+  if (segment == kNoSegment) {
+    edges_.erase(edge);
+  } else {
+    edges_.set(edge, segment);
+  }
+}
+
+void QuotientTetrahedralization::begin_trial() {
+  SYMCELL_ASSERT(!trial_.open);
+  trial_.open = true;
+  trial_.tets.clear();
+  trial_.vertices.clear();
+  trial_.edges.clear();
+  trial_.tet_slots = tets_.size();
+  trial_.vertex_slots = vertices_.size();
+  trial_.live_tets = live_tets_;
+  trial_.free_tets.clear();
+  trial_.free_vertices.clear();
+}
+
+std::vector<TetId> QuotientTetrahedralization::take_back_trial() {
+  SYMCELL_ASSERT(trial_.open);
+  trial_.open = false;
+  std::vector<TetId> written;
+  // The last first: of what was overwritten more than once the oldest counts.
+  for (auto it = trial_.tets.rbegin(); it != trial_.tets.rend(); ++it) {
+    tets_[it->first] = it->second;
+    if (it->first < trial_.tet_slots) written.push_back(it->first);
+  }
+  for (auto it = trial_.vertices.rbegin(); it != trial_.vertices.rend(); ++it) {
+    vertices_[idx(it->first)] = it->second;
+  }
+  for (auto it = trial_.edges.rbegin(); it != trial_.edges.rend(); ++it) {
+    set_segment(it->first, it->second);
+  }
+  tets_.resize(trial_.tet_slots);
+  vertices_.resize(trial_.vertex_slots);
+  live_tets_ = trial_.live_tets;
+  undo_free(trial_.free_tets, free_tets_);
+  undo_free(trial_.free_vertices, free_vertices_);
+  std::sort(written.begin(), written.end());
+  written.erase(std::unique(written.begin(), written.end()), written.end());
+  return written;
 }
 
 void QuotientTetrahedralization::star(VertexId v, std::vector<TetCopy>& out) const {

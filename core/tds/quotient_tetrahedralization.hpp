@@ -23,7 +23,9 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/point.hpp"
@@ -98,7 +100,10 @@ class QuotientTetrahedralization {
   void release_vertex(VertexId v);
   [[nodiscard]] std::size_t vertex_slots() const { return vertices_.size(); }
   [[nodiscard]] Point3 point(VertexId v) const { return vertex(v).point; }
-  void move_vertex(VertexId v, Point3 p) { vertices_[idx(v)].point = p; }
+  void move_vertex(VertexId v, Point3 p) {
+    if (trial_.open) keep(v);
+    vertices_[idx(v)].point = p;
+  }
   [[nodiscard]] SolidVertexKind kind(VertexId v) const { return vertex(v).kind; }
   void set_kind(VertexId v, SolidVertexKind kind, std::int32_t parent) {
     vertices_[idx(v)].kind = kind;
@@ -154,8 +159,9 @@ class QuotientTetrahedralization {
   }
 
   // Subsegments: edges on segments of the input or on the axis.
-  [[nodiscard]] EdgeMap& edges() { return edges_; }
   [[nodiscard]] const EdgeMap& edges() const { return edges_; }
+  // kNoSegment: the edge is none of a segment.
+  void set_segment(const EdgeKey& edge, std::int32_t segment);
   // Segment of the edge, kNoSegment.
   [[nodiscard]] std::int32_t segment_of(Corner a, Corner b) const {
     if (kind(a.v) > SolidVertexKind::kSegment || kind(b.v) > SolidVertexKind::kSegment) {
@@ -179,6 +185,19 @@ class QuotientTetrahedralization {
   // From scratch: as replace with nothing removed; faces that occur once must have a facet.
   [[nodiscard]] bool build(std::span<const NewTet> tets) {
     return replace({}, tets, Outline::kChanged);
+  }
+
+  // Edits that may turn out to be of no use: what they overwrite is kept from begin_trial() on, until
+  // they are to stay or everything is as it was. Trials do not nest, and nothing is compacted
+  // meanwhile.
+  void begin_trial();
+  void keep_trial() { trial_.open = false; }
+  // Returns the tetrahedra whose slots were written to.
+  std::vector<TetId> take_back_trial();
+  // A tetrahedron whose corners were moved is another one.
+  void bump_version(TetId t) {
+    if (trial_.open) keep(t);
+    ++tets_[t].version;
   }
 
   // The tetrahedra at vertex copy (v, 0) in the universal cover; at an axis vertex every
@@ -232,6 +251,8 @@ class QuotientTetrahedralization {
                                  Outline outline);
   [[nodiscard]] std::uint64_t outline_hash(Corner a, Corner b, Corner c, std::int32_t facet) const;
   TetId take_slot();
+  void keep(TetId t) { trial_.tets.emplace_back(t, tets_[t]); }
+  void keep(VertexId v) { trial_.vertices.emplace_back(v, vertices_[idx(v)]); }
   [[nodiscard]] std::vector<TetId> spatial_order() const;
   void link(HalfFace h, HalfFace g, std::int32_t off);
 
@@ -243,6 +264,19 @@ class QuotientTetrahedralization {
   std::vector<VertexId> free_vertices_;
   std::size_t live_tets_ = 0;
   std::uint32_t epoch_ = 0;
+
+  // What a trial has overwritten, in order.
+  struct Trial {
+    bool open = false;
+    std::vector<std::pair<TetId, Tet>> tets;
+    std::vector<std::pair<VertexId, Vertex>> vertices;
+    std::vector<std::pair<EdgeKey, std::int32_t>> edges;
+    std::size_t tet_slots = 0, vertex_slots = 0, live_tets = 0;
+    // Slots taken from the lists of free ones, or none where one was added.
+    std::vector<std::optional<TetId>> free_tets;
+    std::vector<std::optional<VertexId>> free_vertices;
+  };
+  Trial trial_;
 
   // Of star(): the copy of each tetrahedron that was met first.
   struct Seen {

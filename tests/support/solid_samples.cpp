@@ -179,7 +179,7 @@ class PrismBuilder {
   void add_segments() {
     QuotientTetrahedralization& mesh = out_.mesh;
     const auto set = [&](Corner a, Corner b, std::int32_t segment) {
-      mesh.edges().set(mesh.edge_key(a, b), segment);
+      mesh.set_segment(mesh.edge_key(a, b), segment);
     };
     for (std::int32_t layer = 0; layer <= s_.layers; ++layer) {
       const bool end = layer == 0 || layer == s_.layers;

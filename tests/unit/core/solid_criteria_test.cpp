@@ -45,7 +45,7 @@ InitialTetrahedralization make(const std::vector<Point3>& points,
   solid.segment_markers.assign(segments.size(), 0);
   std::int32_t s = 0;
   for (const auto& e : segments) {
-    solid.mesh.edges().set(solid.mesh.edge_key({e[0], 0}, {e[1], 0}), s++);
+    solid.mesh.set_segment(solid.mesh.edge_key({e[0], 0}, {e[1], 0}), s++);
   }
   return solid;
 }

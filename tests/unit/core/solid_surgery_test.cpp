@@ -211,7 +211,7 @@ TEST(SolidSurgery, RemovesAFaceWhereThatIsBetter) {
     std::int32_t segment = 0;
     for (VertexId a = 0; a < 3; ++a) {
       for (const VertexId b : {(a + 1) % 3, 3, 4}) {
-        mesh.edges().set(mesh.edge_key({a, 0}, {b, 0}), segment++);
+        mesh.set_segment(mesh.edge_key({a, 0}, {b, 0}), segment++);
       }
     }
     solid.subdomains = {{0, kInfinity}};

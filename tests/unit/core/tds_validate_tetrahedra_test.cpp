@@ -87,7 +87,7 @@ TEST(ValidateTetrahedra, SeesDamage) {
   }
   {
     auto mesh = solid.mesh;
-    mesh.edges().set({0, static_cast<VertexId>(mesh.vertex_slots()) - 1, 0}, 1);
+    mesh.set_segment({0, static_cast<VertexId>(mesh.vertex_slots()) - 1, 0}, 1);
     EXPECT_TRUE(has(complaint(mesh), "subsegments"));
   }
   for (std::size_t v = 0; v < solid.mesh.vertex_slots(); ++v) {

@@ -1,0 +1,96 @@
+// Detours: where no operation betters a tetrahedron, one that makes shapes worse may open the way for
+// others.
+#include <algorithm>
+#include <array>
+#include <queue>
+
+#include "core/improve/solid_improver.hpp"
+
+namespace symcell {
+namespace {
+
+// A detour must better the worst by this share, since it may make much of the rest worse.
+constexpr double kDetourGain = 0.02;
+// Operations of one detour, the first not counted.
+constexpr int kMostSteps = 40;
+// Detours tried by one improver: some in any case, and some a tetrahedron.
+constexpr std::uint64_t kLeastDetours = 2'000;
+constexpr double kDetoursATet = 0.1;
+// Edges, faces, vertices into each other, a new vertex.
+constexpr std::size_t kWays = 6 + 4 + 12 + 1;
+
+}  // namespace
+
+void SolidImprover::allow_detours(double goal) {
+  detour_goal_ = goal;
+  detours_left_ = kLeastDetours + static_cast<std::uint64_t>(
+                                      kDetoursATet * static_cast<double>(mesh_.tet_count()));
+}
+
+bool SolidImprover::open_detour(TetId t, std::size_t way) {
+  if (way < 6) return surgery_.remove_edge(t, kEdgeCorners[way][0], kEdgeCorners[way][1]);
+  if (way < 10) return surgery_.remove_face(t, static_cast<std::uint32_t>(way - 6));
+  if (way < 22) {
+    const auto pair = static_cast<std::uint32_t>(way - 10);
+    const std::uint32_t from = pair / 3, to = (from + 1 + pair % 3) % 4;
+    return surgery_.collapse(t, from, to, 0);
+  }
+  return surgery_.insert_point(t);
+}
+
+// Works on the worst of what the detour has touched, as long as that helps; the worst in the end.
+double SolidImprover::mend_detour(double goal) {
+  std::priority_queue<Entry> queue;
+  const auto enqueue = [&](TetId t) {
+    const double k = key(t);
+    if (k < goal) queue.push({k, t, mesh_.tet(t).version});
+  };
+  for (const TetId t : touched_) enqueue(t);
+  for (int step = 0; !queue.empty() && step < kMostSteps; ++step) {
+    const Entry e = queue.top();
+    queue.pop();
+    if (!mesh_.alive(e.t) || mesh_.tet(e.t).version != e.version) continue;
+    if (!improve(e.t, Means::kAll)) break;
+    for (const TetId t : surgery_.touched()) {
+      touched_.push_back(t);
+      enqueue(t);
+    }
+  }
+  std::sort(touched_.begin(), touched_.end());
+  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  std::erase_if(touched_, [&](TetId t) { return !mesh_.alive(t); });
+  double worst = goal;
+  for (const TetId t : touched_) worst = std::min(worst, key(t));
+  return worst;
+}
+
+// Bounds that must be kept are bought at any shape, what the input excuses is not.
+bool SolidImprover::detour(TetId t) {
+  const double before = key(t);
+  const double least = must_be_mended(before) ? 0 : std::min(surgery_.shape(t), detour_goal_);
+  const double wanted = before > 0 ? std::min(before * (1 + kDetourGain), detour_goal_)
+                                   : before * (1 - kExcessGain);
+  for (std::size_t way = 0; way < kWays && detours_left_ > 0; ++way) {
+    surgery_.begin_trial();
+    surgery_.set_lenient(true);
+    const bool opened = open_detour(t, way);
+    surgery_.set_lenient(false);
+    if (!opened) {
+      surgery_.keep_trial();  // of nothing
+      continue;
+    }
+    --detours_left_;
+    touched_.assign(surgery_.touched().begin(), surgery_.touched().end());
+    const double worst = mend_detour(detour_goal_);
+    const bool shapely = std::all_of(touched_.begin(), touched_.end(),
+                                     [&](TetId u) { return surgery_.shape(u) >= least; });
+    if (worst >= wanted && shapely) {
+      surgery_.keep_trial();
+      return true;
+    }
+    surgery_.take_back_trial();
+  }
+  return false;
+}
+
+}  // namespace symcell
