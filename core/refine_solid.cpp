@@ -22,7 +22,7 @@ constexpr double kGoalDeg = 26;
 // And may cost a vertex where one is below this.
 constexpr double kInsertionGoalDeg = 25;
 // What takes most time is for the worst.
-constexpr double kDetourGoalDeg = 20;
+constexpr double kDetourGoalDeg = 25;
 constexpr int kLastPasses = 3;
 // Full rounds of improvement: the second takes off 5 to 10 % of the tetrahedra, the third 2 to 5 %,
 // each for a quarter more time, which large meshes are not given. Depths of refinement after each

@@ -1,5 +1,5 @@
-// Detours: where no operation betters a tetrahedron, one that makes shapes worse may open the way for
-// others.
+// Detours: where no operation betters a tetrahedron, one that makes shapes worse may open the way
+// for others.
 #include <algorithm>
 #include <array>
 #include <queue>
@@ -16,18 +16,26 @@ constexpr int kMostSteps = 40;
 // Detours tried by one improver: some in any case, and some a tetrahedron.
 constexpr std::uint64_t kLeastDetours = 2'000;
 constexpr double kDetoursATet = 0.1;
-// Edges, faces, vertices into each other, a new vertex.
-constexpr std::size_t kWays = 6 + 4 + 12 + 1;
+// Of one tetrahedron: edges, faces, vertices into each other, a new vertex.
+constexpr std::size_t kOwnWays = 6 + 4 + 12 + 1;
+// The neighbours' follow its own.
+constexpr std::size_t kAllWays = 5 * kOwnWays;
 
 }  // namespace
 
 void SolidImprover::allow_detours(double goal) {
   detour_goal_ = goal;
-  detours_left_ = kLeastDetours + static_cast<std::uint64_t>(
-                                      kDetoursATet * static_cast<double>(mesh_.tet_count()));
+  detours_left_ = kLeastDetours +
+                  static_cast<std::uint64_t>(kDetoursATet * static_cast<double>(mesh_.tet_count()));
 }
 
 bool SolidImprover::open_detour(TetId t, std::size_t way) {
+  if (way >= kOwnWays) {
+    const HalfFace behind = mesh_.tet(t).nb[way / kOwnWays - 1];
+    if (behind == kNoHalfFace) return false;
+    t = tet_of(behind);
+    way %= kOwnWays;
+  }
   if (way < 6) return surgery_.remove_edge(t, kEdgeCorners[way][0], kEdgeCorners[way][1]);
   if (way < 10) return surgery_.remove_face(t, static_cast<std::uint32_t>(way - 6));
   if (way < 22) {
@@ -68,9 +76,13 @@ double SolidImprover::mend_detour(double goal) {
 bool SolidImprover::detour(TetId t) {
   const double before = key(t);
   const double least = must_be_mended(before) ? 0 : std::min(surgery_.shape(t), detour_goal_);
-  const double wanted = before > 0 ? std::min(before * (1 + kDetourGain), detour_goal_)
-                                   : before * (1 - kExcessGain);
-  for (std::size_t way = 0; way < kWays && detours_left_ > 0; ++way) {
+  const double wanted =
+      before > 0 ? std::min(before * (1 + kDetourGain), detour_goal_) : before * (1 - kExcessGain);
+  const std::uint32_t version = mesh_.tet(t).version;
+  // At sharp features of the input there is mostly no way at all.
+  const bool sharp = criteria_.exemption(mesh_, mesh_.tet(t)) == SolidExemption::kSmallInputAngle;
+  const std::size_t ways = sharp ? kOwnWays : kAllWays;
+  for (std::size_t way = 0; way < ways && detours_left_ > 0; ++way) {
     surgery_.begin_trial();
     surgery_.set_lenient(true);
     const bool opened = open_detour(t, way);
@@ -84,7 +96,8 @@ bool SolidImprover::detour(TetId t) {
     const double worst = mend_detour(detour_goal_);
     const bool shapely = std::all_of(touched_.begin(), touched_.end(),
                                      [&](TetId u) { return surgery_.shape(u) >= least; });
-    if (worst >= wanted && shapely) {
+    const bool changed = !mesh_.alive(t) || mesh_.tet(t).version != version;
+    if (changed && worst >= wanted && shapely) {
       surgery_.keep_trial();
       return true;
     }

@@ -59,8 +59,8 @@ class SolidImprover {
   void note_changes();
   [[nodiscard]] std::vector<VertexId> vertices_in_order() const;
   [[nodiscard]] bool merge(VertexId v, double floor, SolidSurgery::Bounds bounds);
-  // Low where there is much to mend: broken bounds that must be kept (below -kMustBeKept), then those
-  // that the input excuses (below 0), then poor shapes (their sine).
+  // Low where there is much to mend: broken bounds that must be kept (below -kMustBeKept), then
+  // those that the input excuses (below 0), then poor shapes (their sine).
   static constexpr double kMustBeKept = 1e12;
   [[nodiscard]] double key(TetId t) const;
   [[nodiscard]] static bool must_be_mended(double key) { return key <= -kMustBeKept; }

@@ -38,8 +38,8 @@ class SolidSurgery {
   // From now on no bound on size is broken for the sake of the ratio: no refinement follows.
   void keep_size() { size_kept_ = true; }
 
-  // Operations as parts of a trial: begin_trial(), some of them, and then they stay or everything is
-  // as it was.
+  // Operations as parts of a trial: begin_trial(), some of them, and then they stay or everything
+  // is as it was.
   void begin_trial() { editor_.begin_trial(); }
   void keep_trial() { editor_.keep_trial(); }
   void take_back_trial();

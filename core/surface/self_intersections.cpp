@@ -13,15 +13,16 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using P = Kernel::Point_3;
 
-// Of two cross products' dot product, relative to the lengths that enter: some 20 roundings of 2^-53.
+// Of two cross products' dot product, relative to the lengths that enter: some 20 roundings of
+// 2^-53.
 constexpr double kFoldedRounding = 1e-14;
 
 P cgal_point(const Point3& p) {
   return {p.x, p.y, p.z};
 }
 
-// Whether a and b lie on different sides of line pq, whatever the rounding: seen along the line, at an
-// obtuse angle.
+// Whether a and b lie on different sides of line pq, whatever the rounding: seen along the line, at
+// an obtuse angle.
 bool surely_apart(const Point3& p, const Point3& q, const Point3& a, const Point3& b) {
   const Point3 u = q - p, v = a - p, w = b - p;
   return dot(cross(u, v), cross(u, w)) <

@@ -240,7 +240,8 @@ void TriangleTree::visit_meeting_boxes(
       pending.emplace_back(a + 1, a + 1);
       pending.emplace_back(na.begin, na.begin);
       add(a + 1, na.begin);
-    } else if (na.count > 0 || (nb.count == 0 && distance(na.low, na.high) < distance(nb.low, nb.high))) {
+    } else if (na.count > 0 ||
+               (nb.count == 0 && distance(na.low, na.high) < distance(nb.low, nb.high))) {
       add(a, b + 1);
       add(a, nb.begin);
     } else {

@@ -1,5 +1,5 @@
-// A tree of boxes over triangles: the nearest point of a surface, within a reach; triangles that may
-// meet.
+// A tree of boxes over triangles: the nearest point of a surface, within a reach; triangles that
+// may meet.
 //
 // Built by splitting at the median centroid along the longest side. An own tree and not CGAL's:
 // the queries here are bounded ("is the surface within 1e-3 of here?"), which lets most of them end
@@ -74,10 +74,7 @@ class TriangleTree {
   template <class MakeItem>
   std::int32_t build(std::span<Centroid> order, const MakeItem& item);
   template <class Visit>
-  bool search_below(std::int32_t root,
-                    Point3 p,
-                    double& squared_reach,
-                    const Visit& visit) const;
+  bool search_below(std::int32_t root, Point3 p, double& squared_reach, const Visit& visit) const;
   template <class Visit>
   void search(Point3 p, double& squared_reach, std::int32_t last, const Visit& visit) const;
 

@@ -131,8 +131,7 @@ Result<ShapeError> ShapeSymmetry::turn_error(std::span<const Point3> samples,
     if (i % kCheckEvery == 0) {
       if (auto state = context.check(); !state) return tl::unexpected<Error>(state.error());
     }
-    const Point3 q =
-        axis.origin + rotate_about(axis.direction, c, s, samples[i] - axis.origin);
+    const Point3 q = axis.origin + rotate_about(axis.direction, c, s, samples[i] - axis.origin);
     if (worst.distance > 0 && tree_.within(q, worst.distance, last)) continue;
     const double distance = std::sqrt(tree_.nearest(q, diameter_, last).squared);
     if (distance <= worst.distance) continue;

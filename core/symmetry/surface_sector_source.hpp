@@ -58,8 +58,8 @@ class SurfaceSectorSource final : public SectorSource {
   SolidSymmetry symmetry_;
   std::vector<std::string> repairs_;
   double tolerance_;
-  double noise_;         // of coordinates
-  double volume_;        // of the input
+  double noise_;                 // of coordinates
+  double volume_;                // of the input
   IndexedSurface full_;          // local frame
   TriangleTree tree_;            // of full_
   std::vector<Point3> samples_;  // of full_

@@ -187,8 +187,8 @@ class QuotientTetrahedralization {
     return replace({}, tets, Outline::kChanged);
   }
 
-  // Edits that may turn out to be of no use: what they overwrite is kept from begin_trial() on, until
-  // they are to stay or everything is as it was. Trials do not nest, and nothing is compacted
+  // Edits that may turn out to be of no use: what they overwrite is kept from begin_trial() on,
+  // until they are to stay or everything is as it was. Trials do not nest, and nothing is compacted
   // meanwhile.
   void begin_trial();
   void keep_trial() { trial_.open = false; }
@@ -213,7 +213,8 @@ class QuotientTetrahedralization {
 
   // Rewrites the slots of tetrahedra without gaps, near ones near each other. New id -> old one.
   std::vector<TetId> compact_tets();
-  // Rewrites those of vertices, in the order of the tetrahedra. Old id -> new one (-1: was deleted).
+  // Rewrites those of vertices, in the order of the tetrahedra. Old id -> new one (-1: was
+  // deleted).
   std::vector<VertexId> compact_vertices();
   std::vector<VertexId> compact() {
     compact_tets();

@@ -1,11 +1,12 @@
 // The space-filling curve, and tetrahedra along it.
+#include "core/geometry/spatial_order.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstdlib>
 #include <vector>
 
-#include "core/geometry/spatial_order.hpp"
 #include "tests/unit/core/solid_checks.hpp"
 
 namespace symcell {
