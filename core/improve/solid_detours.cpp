@@ -13,11 +13,15 @@ namespace {
 constexpr double kDetourGain = 0.02;
 // Operations of one detour, the first not counted.
 constexpr int kMostSteps = 40;
+// What is larger than its bound by this factor, squared, after the first operation mostly stays so.
+constexpr double kHopelessExcess2 = 4;
 // Detours tried by one improver: some in any case, and some a tetrahedron.
 constexpr std::uint64_t kLeastDetours = 2'000;
 constexpr double kDetoursATet = 0.1;
-// Of one tetrahedron: edges, faces, vertices into each other, a new vertex.
-constexpr std::size_t kOwnWays = 6 + 4 + 12 + 1;
+// Of one tetrahedron: a new vertex, which helps most often, edges, faces, vertices into each other.
+constexpr std::size_t kOwnWays = 1 + 6 + 4 + 12;
+// In meshes below this size, where there is time, the new vertex comes last.
+constexpr std::size_t kSmallMesh = 1'000;
 // The neighbours' follow its own.
 constexpr std::size_t kAllWays = 5 * kOwnWays;
 
@@ -36,14 +40,13 @@ bool SolidImprover::open_detour(TetId t, std::size_t way) {
     t = tet_of(behind);
     way %= kOwnWays;
   }
-  if (way < 6) return surgery_.remove_edge(t, kEdgeCorners[way][0], kEdgeCorners[way][1]);
-  if (way < 10) return surgery_.remove_face(t, static_cast<std::uint32_t>(way - 6));
-  if (way < 22) {
-    const auto pair = static_cast<std::uint32_t>(way - 10);
-    const std::uint32_t from = pair / 3, to = (from + 1 + pair % 3) % 4;
-    return surgery_.collapse(t, from, to, 0);
-  }
-  return surgery_.insert_point(t);
+  if (mesh_.tet_count() < kSmallMesh) way = (way + 1) % kOwnWays;
+  if (way == 0) return surgery_.insert_point(t);
+  if (way < 7) return surgery_.remove_edge(t, kEdgeCorners[way - 1][0], kEdgeCorners[way - 1][1]);
+  if (way < 11) return surgery_.remove_face(t, static_cast<std::uint32_t>(way - 7));
+  const auto pair = static_cast<std::uint32_t>(way - 11);
+  const std::uint32_t from = pair / 3, to = (from + 1 + pair % 3) % 4;
+  return surgery_.collapse(t, from, to, 0);
 }
 
 // Works on the worst of what the detour has touched, as long as that helps; the worst in the end.
@@ -54,6 +57,7 @@ double SolidImprover::mend_detour(double goal) {
     if (k < goal) queue.push({k, t, mesh_.tet(t).version});
   };
   for (const TetId t : touched_) enqueue(t);
+  if (!queue.empty() && queue.top().key < -kHopelessExcess2 * kMustBeKept) return queue.top().key;
   for (int step = 0; !queue.empty() && step < kMostSteps; ++step) {
     const Entry e = queue.top();
     queue.pop();
@@ -79,9 +83,10 @@ bool SolidImprover::detour(TetId t) {
   const double wanted =
       before > 0 ? std::min(before * (1 + kDetourGain), detour_goal_) : before * (1 - kExcessGain);
   const std::uint32_t version = mesh_.tet(t).version;
-  // At sharp features of the input there is mostly no way at all.
+  // Where the input excuses what is bad there is mostly no way at all.
   const bool sharp = criteria_.exemption(mesh_, mesh_.tet(t)) == SolidExemption::kSmallInputAngle;
-  const std::size_t ways = sharp ? kOwnWays : kAllWays;
+  const bool excused = before < 0 && !must_be_mended(before);
+  const std::size_t ways = sharp || excused ? kOwnWays : kAllWays;
   for (std::size_t way = 0; way < ways && detours_left_ > 0; ++way) {
     surgery_.begin_trial();
     surgery_.set_lenient(true);

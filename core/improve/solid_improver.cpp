@@ -97,7 +97,8 @@ bool SolidImprover::change(TetId t, Means means) {
   };
   if (once(improve(t, means))) return true;
   if (means == Means::kFlips) return false;
-  if (key(t) < detour_goal_ && detour(t)) return true;
+  // Detours insert vertices as well.
+  if (detours_left_ > 0) return key(t) < detour_goal_ && detour(t);
   return surgery_.shape(t) < insertion_goal_ && once(surgery_.insert_point(t));
 }
 
