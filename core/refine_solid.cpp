@@ -19,10 +19,8 @@ namespace {
 
 // The improvement works on tetrahedra with a dihedral angle below this or above its supplement.
 constexpr double kGoalDeg = 26;
-// And may cost a vertex where one is below this.
-constexpr double kInsertionGoalDeg = 25;
-// What takes most time is for the worst.
-constexpr double kDetourGoalDeg = 25;
+// And may cost a vertex, or a detour, where one is below this.
+constexpr double kCostlyGoalDeg = 25;
 constexpr int kLastPasses = 3;
 // Full rounds of improvement: the second takes off 5 to 10 % of the tetrahedra, the third 2 to 5 %,
 // each for a quarter more time, which large meshes are not given. Depths of refinement after each
@@ -162,9 +160,10 @@ Result<void> improve(SolidEditor& editor,
   SolidSurgery surgery(editor, criteria);
   surgery.keep_size();
   SolidImprover improver(surgery, criteria, context);
-  const double insertion_deg = std::max(kInsertionGoalDeg, options.min_dihedral_deg);
-  improver.allow_insertion(std::sin(insertion_deg * std::numbers::pi / 180));
-  improver.allow_detours(std::sin(kDetourGoalDeg * std::numbers::pi / 180));
+  const double costly_deg = std::max(kCostlyGoalDeg, options.min_dihedral_deg);
+  const double costly_goal = std::sin(costly_deg * std::numbers::pi / 180);
+  improver.allow_insertion(costly_goal);
+  improver.allow_detours(costly_goal);
   // What could not be mended may be after its neighbours were.
   return improver.mend(goal, kLastPasses);
 }

@@ -152,7 +152,7 @@ bool SolidSurgery::merge_in_the_middle(const Collapse& plan, double floor) {
     const TetMeasures& m = editor_.measures(c.t);
     volume += m.volume;
     limit = std::max(limit, criteria_.max_volume(n.region));
-    include(before, shapes_[c.t], m, n.region, exempt(n));
+    include(before, shapes_[c.t], m, n.region, exempt(n.c));
   }
   const std::size_t left = star_.size() - plan.shared + stretched_.size();
   if (!may_shrink(volume, limit, left)) return false;

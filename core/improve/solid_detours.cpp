@@ -76,12 +76,17 @@ double SolidImprover::mend_detour(double goal) {
   return worst;
 }
 
-// Bounds that must be kept are bought at any shape, what the input excuses is not.
+// Bounds that must be kept are bought at any shape, what the input excuses is not; and nothing at
+// the price of a bound on size, which no refinement mends any more.
 bool SolidImprover::detour(TetId t) {
   const double before = key(t);
   const double least = must_be_mended(before) ? 0 : std::min(surgery_.shape(t), detour_goal_);
   const double wanted =
       before > 0 ? std::min(before * (1 + kDetourGain), detour_goal_) : before * (1 - kExcessGain);
+  const auto size_excess2 = [&](TetId u) {
+    return criteria_.size_excess2(surgery_.editor().measures(u), mesh_.tet(u).region);
+  };
+  const double size_before = std::max(1.0, size_excess2(t));
   const std::uint32_t version = mesh_.tet(t).version;
   // Where the input excuses what is bad there is mostly no way at all.
   const bool sharp = criteria_.exemption(mesh_, mesh_.tet(t)) == SolidExemption::kSmallInputAngle;
@@ -99,10 +104,11 @@ bool SolidImprover::detour(TetId t) {
     --detours_left_;
     touched_.assign(surgery_.touched().begin(), surgery_.touched().end());
     const double worst = mend_detour(detour_goal_);
-    const bool shapely = std::all_of(touched_.begin(), touched_.end(),
-                                     [&](TetId u) { return surgery_.shape(u) >= least; });
+    const bool will_do = std::all_of(touched_.begin(), touched_.end(), [&](TetId u) {
+      return surgery_.shape(u) >= least && size_excess2(u) <= size_before;
+    });
     const bool changed = !mesh_.alive(t) || mesh_.tet(t).version != version;
-    if (changed && worst >= wanted && shapely) {
+    if (changed && worst >= wanted && will_do) {
       surgery_.keep_trial();
       return true;
     }

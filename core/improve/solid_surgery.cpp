@@ -67,16 +67,15 @@ SolidSurgery::Worth SolidSurgery::worth_of(std::span<const NewTet> tets) const {
                  d = mesh_.lift(t.c[3]);
     const TetMeasures m = measure_tet(a, b, c, d);
     if (is_flat(m)) return {-1, kFar, kFar};
-    include(w, min_dihedral_sine(a, b, c, d), m, t.region, exempt(t));
+    include(w, min_dihedral_sine(a, b, c, d), m, t.region, exempt(t.c));
   }
   return w;
 }
 
-bool SolidSurgery::exempt(const NewTet& t) const {
-  for (const Corner& x : t.c) {
-    if (criteria_.exemption(mesh_, x.v) != SolidExemption::kNone) return true;
-  }
-  return false;
+bool SolidSurgery::exempt(std::span<const Corner> corners) const {
+  return std::any_of(corners.begin(), corners.end(), [&](const Corner& x) {
+    return criteria_.exemption(mesh_, x.v) != SolidExemption::kNone;
+  });
 }
 
 bool SolidSurgery::all_within(std::span<const NewTet> tets,
@@ -86,7 +85,7 @@ bool SolidSurgery::all_within(std::span<const NewTet> tets,
   for (const NewTet& t : tets) {
     const auto& f = kFaceCorners[0];
     const LinkFace link(place(t.c[f[0]]), place(t.c[f[1]]), place(t.c[f[2]]));
-    if (!within(LinkTet(place(t.c[0]), link, limits.shape), t.region, exempt(t), limits)) {
+    if (!within(LinkTet(place(t.c[0]), link, limits.shape), t.region, exempt(t.c), limits)) {
       return false;
     }
   }
@@ -94,9 +93,8 @@ bool SolidSurgery::all_within(std::span<const NewTet> tets,
 }
 
 // Bounds come before shapes, those that must be kept before those that the input excuses from.
-bool SolidSurgery::better(const Worth& now, const Worth& before) const {
+bool SolidSurgery::better(const Worth& now, const Worth& before) {
   if (now.shape <= 0) return false;
-  if (lenient_) return now.shape > kOpeningShape;
   const bool shapelier = now.shape > before.shape * (1 + kGain);
   const auto less = [&](double excess, double old) {
     if (excess > old * (1 - kExcessGain)) return excess <= old && shapelier;
@@ -296,7 +294,7 @@ bool SolidSurgery::remove_edge(TetId t, std::uint32_t i, std::uint32_t j) {
       if (!fill_chain({chain.data(), n}, region, facet, least)) return false;
     }
   }
-  if (!better(worth_of(new_tets_), before)) return false;
+  if (!accepts(worth_of(new_tets_), before)) return false;
   if (!apply(r.tets, new_tets_, Outline::kKept)) return false;
   editor_.count_flip();
   return true;
@@ -327,7 +325,7 @@ bool SolidSurgery::remove_face(TetId t, std::uint32_t i) {
     n.region = tet.region;
     new_tets_.push_back(n);
   }
-  if (!better(worth_of(new_tets_), before) || !apply(removed, new_tets_, Outline::kKept))
+  if (!accepts(worth_of(new_tets_), before) || !apply(removed, new_tets_, Outline::kKept))
     return false;
   editor_.count_flip();
   return true;
@@ -342,14 +340,10 @@ bool SolidSurgery::insert_point(TetId t) {
   for (const CavityFace& f : cavity.faces) {
     const TetMeasures m = measure_tet(cavity.point, f.points[0], f.points[1], f.points[2]);
     if (is_flat(m)) return false;
-    bool exempt = false;
-    for (const Corner& x : f.corners) {
-      exempt = exempt || criteria_.exemption(mesh_, x.v) != SolidExemption::kNone;
-    }
     include(now, min_dihedral_sine(cavity.point, f.points[0], f.points[1], f.points[2]), m,
-            f.region, exempt);
+            f.region, exempt(f.corners));
   }
-  if (!better(now, before)) return false;
+  if (!accepts(now, before)) return false;
   if (editor_.insert(cavity, SolidVertexKind::kFree, -1, false) == SolidEditor::kNoVertex) {
     return false;
   }

@@ -43,8 +43,8 @@ class SolidSurgery {
   void begin_trial() { editor_.begin_trial(); }
   void keep_trial() { editor_.keep_trial(); }
   void take_back_trial();
-  // A lenient operation may make shapes worse, down to tetrahedra of some degrees, and break bounds
-  // but those on size: the first of a trial that others mend.
+  // Flips, merges and insertions may then make shapes worse, down to tetrahedra of some degrees,
+  // and break bounds: as the first operation of a trial, for others to mend.
   void set_lenient(bool lenient) { lenient_ = lenient; }
 
   // Of the tetrahedra that an operation made or changed.
@@ -115,8 +115,11 @@ class SolidSurgery {
                             std::int32_t region,
                             bool exempt,
                             const Worth& limits) const;
-  [[nodiscard]] bool exempt(const NewTet& t) const;
-  [[nodiscard]] bool better(const Worth& now, const Worth& before) const;
+  [[nodiscard]] bool exempt(std::span<const Corner> corners) const;
+  [[nodiscard]] static bool better(const Worth& now, const Worth& before);
+  [[nodiscard]] bool accepts(const Worth& now, const Worth& before) const {
+    return lenient_ ? now.shape > kOpeningShape : better(now, before);
+  }
   // That edge and face removals must exceed.
   [[nodiscard]] double least_shape(const Worth& before) const {
     if (lenient_) return kOpeningShape;

@@ -11,7 +11,7 @@ namespace {
 constexpr std::int32_t kMaxSectors = 40;
 // Triangles that are worked on for the sake of a better cut, and candidates that are compared.
 constexpr std::size_t kCompareBudget = 150'000;
-constexpr std::size_t kMostCompared = 8;
+constexpr std::int32_t kMostCompared = 8;
 // Sectors that promise a mesh larger by this factor than one that went well are left out.
 constexpr double kMostCostlier = 2.5;
 
@@ -25,20 +25,23 @@ bool is_worth_another_sector(ErrorCode code) {
   return code == ErrorCode::kTetrahedralizationFailed || code == ErrorCode::kInternal;
 }
 
-std::int32_t worth_comparing(const SectorSource& source) {
-  if (source.effort() == 0) return 1;
-  return static_cast<std::int32_t>(
-      std::clamp<std::size_t>(kCompareBudget / source.effort(), 1, kMostCompared));
-}
-
 }  // namespace
 
 SolidStarts::SolidStarts(const SectorSource& source)
     : source_(source), most_(std::min(source.candidates(), kMaxSectors)) {
 }
 
+// Whether a cut more is worth its time, before any is meshed.
+bool SolidStarts::is_worth_comparing() const {
+  if (next_ == 0) return true;
+  const std::size_t one_more = effort_ / static_cast<std::size_t>(next_);
+  return next_ < std::min(most_, kMostCompared) && effort_ > 0 &&
+         effort_ + one_more <= kCompareBudget;
+}
+
 Result<void> SolidStarts::cut_one_more(ExecutionContext& context) {
   auto sector = source_.sector(next_++, context);
+  effort_ += sector ? std::max(source_.effort(), sector->triangles_made) : source_.effort();
   if (sector) {
     sectors_.push_back(std::move(*sector));
     return {};
@@ -49,7 +52,7 @@ Result<void> SolidStarts::cut_one_more(ExecutionContext& context) {
 
 Result<InitialTetrahedralization> SolidStarts::next(ExecutionContext& context) {
   if (next_ == 0) {
-    while (next_ < std::min(most_, worth_comparing(source_))) {
+    while (is_worth_comparing()) {
       if (auto ok = cut_one_more(context); !ok) return tl::unexpected<Error>(ok.error());
       if (!sectors_.empty() && sectors_.back().narrow_corners == 0) break;
     }

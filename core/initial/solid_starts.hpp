@@ -26,16 +26,16 @@ class SolidStarts {
   [[nodiscard]] Result<InitialTetrahedralization> next(ExecutionContext& context);
 
   // Triangles that were worked on so far.
-  [[nodiscard]] std::size_t effort() const {
-    return static_cast<std::size_t>(next_) * source_.effort();
-  }
+  [[nodiscard]] std::size_t effort() const { return effort_; }
 
  private:
+  [[nodiscard]] bool is_worth_comparing() const;
   [[nodiscard]] Result<void> cut_one_more(ExecutionContext& context);
 
   const SectorSource& source_;
   std::int32_t most_;
-  std::int32_t next_ = 0;             // candidate of the source
+  std::int32_t next_ = 0;  // candidate of the source
+  std::size_t effort_ = 0;
   std::vector<SolidSector> sectors_;  // cut already; the most promising is the last
   double cost_ = std::numeric_limits<double>::infinity();  // least of those that went well
   Error last_;

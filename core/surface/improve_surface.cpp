@@ -30,6 +30,9 @@ constexpr int kRounds = 10;
 // Triangles of curved parts flatter than this are split, down to sides of so many deviations.
 constexpr double kWantedShape = 0.42;
 constexpr double kLeastSplit = 10;
+// A neighbour's side is halved first if it is longer by this factor, squared.
+constexpr double kLonger = 1.0001;
+constexpr int kMostPropagation = 100;
 // A pass that changes less than this share of the surface is the last one.
 constexpr double kWorthwhile = 0.005;
 // A flip or a move must raise the worst shape by this factor.
@@ -269,6 +272,34 @@ class Improver {
     return dot(n, plane.normal) > 0;
   }
 
+  struct Side {
+    std::int32_t triangle, side;
+  };
+  [[nodiscard]] double squared_length(Side s) const {
+    const auto p = mesh_.points(s.triangle);
+    return squared_distance(p[s.side], p[(s.side + 1) % 3]);
+  }
+  [[nodiscard]] Side longest_side(std::int32_t t) const {
+    Side longest{t, 0};
+    for (const std::int32_t i : {1, 2}) {
+      if (squared_length({t, i}) > squared_length(longest)) longest = {t, i};
+    }
+    return longest;
+  }
+
+  // From a triangle's longest side on to the neighbour's, as long as that is longer: halving a side
+  // that is not the longest makes thin triangles, and they others. Source: [Rivara97].
+  [[nodiscard]] Side terminal_side(Side s) const {
+    for (int step = 0; step < kMostPropagation; ++step) {
+      const QuotientNeighbour other = mesh_.across(s.triangle, s.side);
+      if (other.triangle < 0 || planar(other.triangle)) break;
+      const Side next = longest_side(other.triangle);
+      if (squared_length(next) <= kLonger * squared_length(s)) break;
+      s = next;
+    }
+    return s;
+  }
+
   // Triangles of curved parts that are too thin are halved across their longest side.
   Result<std::size_t> split_pass() {
     std::size_t done = 0;
@@ -281,20 +312,16 @@ class Improver {
       if (!mesh_.alive(t) || planar(t)) continue;
       const auto p = mesh_.points(t);
       if (shape_of(p) >= kWantedShape) continue;
-      std::int32_t longest = 0;
-      const auto squared = [&p](std::int32_t i) { return squared_distance(p[i], p[(i + 1) % 3]); };
-      for (const std::int32_t i : {1, 2}) {
-        if (squared(i) > squared(longest)) longest = i;
-      }
-      if (squared(longest) < least * least) continue;
+      const Side longest = longest_side(t);
+      const double side2 = squared_length(longest);
+      if (side2 < least * least) continue;
       // Bands thinner than the deviation, between edges that stay: halving makes more of them.
-      if (length(area_normal(p[0], p[1], p[2])) < guard_.most() * std::sqrt(squared(longest))) {
-        continue;
-      }
-      const QuotientNeighbour other = mesh_.across(t, longest);
-      const std::vector<PlannedTriangle> changed = mesh_.split(t, longest);
+      if (length(area_normal(p[0], p[1], p[2])) < guard_.most() * std::sqrt(side2)) continue;
+      const Side terminal = terminal_side(longest);
+      const QuotientNeighbour other = mesh_.across(terminal.triangle, terminal.side);
+      const std::vector<PlannedTriangle> changed = mesh_.split(terminal.triangle, terminal.side);
       if (changed.empty()) continue;
-      const std::array<std::int32_t, 2> gone{t, other.triangle};
+      const std::array<std::int32_t, 2> gone{terminal.triangle, other.triangle};
       guard_.follow(gone, changed);
       commit(gone, changed);
       ++done;

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -81,6 +82,8 @@ struct SolidSector {
   // radius-edge bound, and an estimate of the elements that the triangles take.
   std::int64_t narrow_corners = 0;
   double meshing_cost = 0;
+  // Triangles of all the surfaces that this one was chosen from.
+  std::size_t triangles_made = 0;
 
   // Volume of the whole model's enclosed space by its boundary alone, 0 if unknown. A check.
   double expected_volume = 0;

@@ -36,6 +36,10 @@ constexpr double kFlatShareOfTolerance = 0.02;
 // any thin triangle is left. With narrow corners two results are enough.
 constexpr std::array<double, 6> kImproveShares = {0.35, 0.3, 0.25, 0.2, 0.1, 0.05};
 constexpr int kEnoughTaken = 2;
+// Surfaces that must be divided for the sake of their shapes take their time: no more shares once
+// the results have so many triangles, and so many times those given.
+constexpr std::size_t kManyTriangles = 20'000;
+constexpr std::size_t kManyTimes = 4;
 // So many triangles of curved parts may be thin: height below a fifth of the longest side.
 constexpr double kThinShape = 0.2;
 constexpr double kThinShare = 0.002;
@@ -224,6 +228,7 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
   Error last;
   std::optional<SectorShape> best;
   int taken = 0;
+  std::size_t made = 0;
   for (const double share : kImproveShares) {
     QuotientSurface improved = given;
     if (auto done = improve_surface(improved, share * tolerance_, flatness, context); !done) {
@@ -231,6 +236,7 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
     }
     const SectorShape shape = shape_of(improved);
     ++taken;
+    made += improved.triangles.size();
     if (!best || shape.better_than(*best)) {
       if (auto same = check_shape(improved, context); !same) {
         if (auto state = context.check(); !state) return tl::unexpected<Error>(state.error());
@@ -246,8 +252,10 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
       best = shape;
     }
     if (!best->many_thin() && (best->narrow == 0 || taken >= kEnoughTaken)) break;
+    if (made > kManyTriangles + kManyTimes * given.triangles.size()) break;
   }
   if (!best) return tl::unexpected<Error>(last);
+  best->made = made;
   return *best;
 }
 
@@ -324,6 +332,7 @@ Result<SolidSector> SurfaceSectorSource::sector(std::int32_t index,
   if (sector) {
     sector->narrow_corners = shape->narrow;
     sector->meshing_cost = shape->cost;
+    sector->triangles_made = shape->made;
   }
   return sector;
 }

@@ -20,6 +20,7 @@ struct SectorShape {
   // Elements that the surface takes: as long as a triangle or strip is high, along its length; and
   // what refinement adds at narrow corners in vain.
   double cost = 0;
+  std::size_t made = 0;  // triangles, of this surface and others it was chosen from
 
   [[nodiscard]] bool many_thin() const;
   [[nodiscard]] bool better_than(const SectorShape& other) const;

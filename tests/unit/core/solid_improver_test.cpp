@@ -112,5 +112,44 @@ TEST_P(SolidImproverFold, VerticesOfTheCutGo) {
   EXPECT_TRUE(test::is_valid(solid->mesh, volume));
 }
 
+// What is stuck after mending gets better by detours, and nothing gets worse for it.
+TEST_P(SolidImproverFold, DetoursBetterTheWorst) {
+  constexpr double kWanted = 0.42;  // 25 degrees
+  SolidEditor editor(solid_.mesh);
+  const SolidCriteria criteria(solid_, options_);
+  ExecutionContext context;
+  ASSERT_TRUE(SolidRefiner(editor, criteria, context).run());
+  test::random_flips(solid_.mesh, 100, 3);
+  test::jitter(solid_.mesh, 0.3, 4);
+  SolidEditor flipped(solid_.mesh);
+  SolidSurgery surgery(flipped, criteria);
+  SolidImprover improver(surgery, criteria, context);
+  const auto worst = [&] {
+    std::vector<double> shapes;
+    for (TetId t = 0; t < solid_.mesh.tet_slots(); ++t) {
+      if (solid_.mesh.alive(t)) shapes.push_back(surgery.shape(t));
+    }
+    std::sort(shapes.begin(), shapes.end());
+    return shapes;
+  };
+  ASSERT_TRUE(improver.mend(kWanted));
+  const auto stuck = worst();
+  const std::size_t bad = test::count_bad(flipped, criteria);
+  improver.allow_detours(kWanted);
+  ASSERT_TRUE(improver.mend(kWanted, 3));
+  EXPECT_TRUE(test::is_valid(solid_.mesh, volume_));
+  EXPECT_LE(test::count_bad(flipped, criteria), bad);
+  const auto better = worst();
+  const auto poor = [&](const std::vector<double>& shapes) {
+    return std::lower_bound(shapes.begin(), shapes.end(), kWanted) - shapes.begin();
+  };
+  EXPECT_LE(poor(better), poor(stuck));
+  if (bad == 0) {
+    EXPECT_GE(better.front(), stuck.front());
+  }
+  RecordProperty("stuck", static_cast<int>(poor(stuck)));
+  RecordProperty("left", static_cast<int>(poor(better)));
+}
+
 }  // namespace
 }  // namespace symcell

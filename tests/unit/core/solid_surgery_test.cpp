@@ -325,5 +325,57 @@ TEST_P(SolidSurgeryFold, MergesVertices) {
   EXPECT_EQ(mesh().edges().size(), segments - static_cast<std::size_t>(segment));
 }
 
+// Whatever a trial does, lenient or not, it can be taken back, slot by slot; and a mesh that was
+// never tried on goes on alike.
+TEST_P(SolidSurgeryFold, TrialsAreTakenBack) {
+  const InitialTetrahedralization untouched = solid_;
+  SolidEditor editor(mesh());
+  const SolidCriteria criteria(solid_, options_);
+  SolidSurgery surgery(editor, criteria);
+  std::vector<double> shapes;
+  for (TetId t = 0; t < mesh().tet_slots(); ++t) {
+    shapes.push_back(mesh().alive(t) ? surgery.shape(t) : 0);
+  }
+  const auto before = test::fingerprint(mesh());
+  int edits = 0;
+  for (TetId t = 0; t < untouched.mesh.tet_slots() && edits < 4 * kMaxDone; ++t) {
+    if (!mesh().alive(t)) continue;
+    surgery.begin_trial();
+    for (const bool lenient : {true, false}) {
+      surgery.set_lenient(lenient);
+      for (std::uint32_t way = 0; way < 12 && mesh().alive(t); ++way) {
+        const std::uint32_t i = way % 4, j = (i + 1 + way / 4) % 4;
+        edits += surgery.collapse(t, i, j, 0.1) ? 1 : 0;
+        if (mesh().alive(t)) edits += surgery.remove_edge(t, i, j) ? 1 : 0;
+        if (mesh().alive(t)) edits += surgery.remove_face(t, i) ? 1 : 0;
+        if (mesh().alive(t)) edits += surgery.smooth(mesh().tet(t).v[i]) ? 1 : 0;
+        if (mesh().alive(t)) edits += surgery.insert_point(t) ? 1 : 0;
+      }
+    }
+    ASSERT_TRUE(test::is_valid(mesh(), volume_));
+    surgery.take_back_trial();
+    ASSERT_EQ(test::fingerprint(mesh()), before);
+  }
+  EXPECT_GT(edits, kMaxDone);
+  EXPECT_EQ(mesh().tet_count(), untouched.mesh.tet_count());
+  untouched.mesh.edges().for_each([&](const EdgeKey& key, std::int32_t segment) {
+    EXPECT_EQ(mesh().edges().find(key), segment);
+  });
+  for (TetId t = 0; t < mesh().tet_slots(); ++t) {
+    if (!mesh().alive(t)) continue;
+    EXPECT_EQ(surgery.shape(t), shapes[t]);
+    EXPECT_EQ(editor.measures(t).volume, editor.measure(t).volume);
+  }
+  InitialTetrahedralization other = untouched;
+  SolidEditor other_editor(other.mesh);
+  SolidSurgery other_surgery(other_editor, criteria);
+  surgery.set_lenient(false);
+  for (TetId t = 0; t < 200 && t < mesh().tet_slots(); ++t) {
+    if (!mesh().alive(t)) continue;
+    ASSERT_EQ(surgery.remove_edge(t, 0, 1), other_surgery.remove_edge(t, 0, 1));
+  }
+  EXPECT_EQ(test::fingerprint(mesh()), test::fingerprint(other.mesh));
+}
+
 }  // namespace
 }  // namespace symcell
