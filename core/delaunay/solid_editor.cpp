@@ -16,6 +16,8 @@ constexpr std::size_t kMaxCavity = 1500;
 // Tetrahedra that leave a cavity one after the other, each at the cost of all: where so many have
 // to, the point is in the wrong place.
 constexpr int kMaxDrops = 60;
+// And so many tetrahedra looked at for it, in large cavities.
+constexpr std::size_t kMaxDropWork = 20'000;
 // Share of the way by which a point may lie in front of a subfacet and yet count as on it.
 constexpr double kOnSubfacet = 1e-6;
 // More tetrahedra than this do not meet at a point or edge of a sane mesh.
@@ -216,6 +218,7 @@ void SolidEditor::grow_cavity(Cavity& cavity) {
 std::int64_t SolidEditor::gather_boundary(Cavity& cavity) {
   cavity.faces.clear();
   cavity.outline.clear();
+  hidden_.clear();
   for (std::size_t at = 0; at < cavity.tets.size(); ++at) {
     const TetCopy c = cavity.tets[at];
     for (std::uint32_t i = 0; i < 4; ++i) {
@@ -242,13 +245,18 @@ std::int64_t SolidEditor::gather_boundary(Cavity& cavity) {
       if (inside) return static_cast<std::int64_t>(at);  // a subfacet with both sides inside
       if (is_flat(cavity.point, face.points[0], face.points[1], face.points[2],
                   kMinRelativeVolume)) {
-        flat_face_ = i;
-        return static_cast<std::int64_t>(at);
+        if (at < cavity.seeds) {
+          flat_face_ = i;
+          return static_cast<std::int64_t>(at);
+        }
+        // Whatever else goes, it has to: its face stays on the boundary.
+        hidden_.push_back(at);
+        continue;
       }
       cavity.faces.push_back(face);
     }
   }
-  return kFits;
+  return hidden_.empty() ? kFits : static_cast<std::int64_t>(hidden_.front());
 }
 
 // A vertex or subsegment of the cavity that its boundary lacks would vanish: names a tetrahedron
@@ -306,18 +314,18 @@ std::int64_t SolidEditor::find_lost(Cavity& cavity) {
   return kFits;
 }
 
-void SolidEditor::drop(Cavity& cavity, std::size_t index) {
-  // Those that are no longer connected to the seeds go with it.
-  mesh_.tet(cavity.tets[index].t).scratch = -1;
+void SolidEditor::drop(Cavity& cavity, std::span<const std::size_t> indices) {
+  // Those that are no longer connected to the seeds go with them.
+  for (const std::size_t i : indices) mesh_.tet(cavity.tets[i].t).scratch = -1;
   keep_.assign(cavity.tets.size(), 0);
-  std::vector<std::size_t> todo;
+  todo_.clear();
   for (std::size_t i = 0; i < cavity.seeds; ++i) {
     keep_[i] = 1;
-    todo.push_back(i);
+    todo_.push_back(i);
   }
-  while (!todo.empty()) {
-    const TetCopy c = cavity.tets[todo.back()];
-    todo.pop_back();
+  while (!todo_.empty()) {
+    const TetCopy c = cavity.tets[todo_.back()];
+    todo_.pop_back();
     for (std::uint32_t i = 0; i < 4; ++i) {
       if (mesh_.tet(c.t).nb[i] == kNoHalfFace) continue;
       const TetCopy n = mesh_.neighbour(c, i);
@@ -325,7 +333,7 @@ void SolidEditor::drop(Cavity& cavity, std::size_t index) {
       const auto j = static_cast<std::size_t>(mesh_.tet(n.t).scratch);
       if (keep_[j] != 0) continue;
       keep_[j] = 1;
-      todo.push_back(j);
+      todo_.push_back(j);
     }
   }
   std::size_t kept = 0;
@@ -366,6 +374,7 @@ bool SolidEditor::find_cavity(Point3 p, const SolidLocation& where, Cavity& cavi
   find_own_facets(cavity);
   grow_cavity(cavity);
   int drops = 0;
+  std::size_t work = 0;
   while (true) {
     flat_face_ = 4;
     std::int64_t bad = gather_boundary(cavity);
@@ -383,8 +392,10 @@ bool SolidEditor::find_cavity(Point3 p, const SolidLocation& where, Cavity& cavi
       }
       continue;
     }
-    if (++drops > kMaxDrops) return false;
-    drop(cavity, static_cast<std::size_t>(bad));
+    work += cavity.tets.size();
+    if (++drops > kMaxDrops || work > kMaxDropWork) return false;
+    if (hidden_.empty()) hidden_.push_back(static_cast<std::size_t>(bad));
+    drop(cavity, hidden_);
   }
   double nearest2 = std::numeric_limits<double>::infinity();
   for (const CavityFace& f : cavity.faces) {

@@ -129,12 +129,12 @@ class SolidEditor {
   void seed_cavity(Cavity& cavity) const;
   void find_own_facets(const Cavity& cavity);
   void grow_cavity(Cavity& cavity);
-  // Fills faces and outline; the index of a tetrahedron that must leave, kFits or kHopeless.
+  // Fills faces and outline; kFits, or the index of a tetrahedron that must leave, with all of its
+  // kind in hidden_.
   static constexpr std::int64_t kFits = -1;
-  static constexpr std::int64_t kHopeless = -2;
   [[nodiscard]] std::int64_t gather_boundary(Cavity& cavity);
   [[nodiscard]] std::int64_t find_lost(Cavity& cavity);
-  void drop(Cavity& cavity, std::size_t index);
+  void drop(Cavity& cavity, std::span<const std::size_t> indices);
   [[nodiscard]] bool add_seed(Cavity& cavity, std::size_t index);
   [[nodiscard]] bool in_own_plane(const Cavity& cavity, const CavityFace& face) const;
   [[nodiscard]] bool contains(const Cavity& cavity, TetCopy c) const;
@@ -152,6 +152,8 @@ class SolidEditor {
   std::vector<std::int32_t> own_facets_;  // on which the point of the cavity lies
   std::vector<NewTet> new_tets_;
   std::vector<std::uint8_t> keep_;
+  std::vector<std::size_t> todo_;
+  std::vector<std::size_t> hidden_;  // tetrahedra with faces that the cavity's point does not see
   struct VertexMark {
     std::uint32_t epoch = 0;
     std::int32_t k = 0;

@@ -97,8 +97,8 @@ bool SolidImprover::change(TetId t, Means means) {
   };
   if (once(improve(t, means))) return true;
   if (means == Means::kFlips) return false;
-  // Detours insert vertices as well.
-  if (detours_left_ > 0) return key(t) < detour_goal_ && detour(t);
+  // Detours insert vertices as well; when too many were taken in vain, what is left is the input's.
+  if (detour_goal_ > 0) return detours_left_ > 0 && key(t) < detour_goal_ && detour(t);
   return surgery_.shape(t) < insertion_goal_ && once(surgery_.insert_point(t));
 }
 

@@ -327,7 +327,9 @@ class Detector {
     const double enough = 4 * tolerance_;
     for (const std::int32_t n : folds) {
       double worst = 0;
-      for (std::int32_t k = 1; k < n && worst <= enough; ++k) {
+      // Where a few points tell that a turn is out of the question it is the only one to measure.
+      const std::int32_t misfit = misfitting_turn(result.axis, n);
+      for (std::int32_t k = misfit > 0 ? misfit : 1; k < n && worst <= enough; ++k) {
         const std::int32_t g = std::gcd(k, n);
         const auto [turn, fresh] = turns.try_emplace({k / g, n / g}, 0.0);
         if (fresh) {
@@ -336,6 +338,7 @@ class Detector {
           turn->second = error->distance;
         }
         worst = std::max(worst, turn->second);
+        if (misfit > 0) break;
       }
       rungs.push_back({n, worst / diameter_, false});
     }
@@ -350,6 +353,20 @@ class Detector {
       if (shape_.fits(axis, 2 * std::numbers::pi / n, reach)) folds.push_back(n);
     }
     return folds;
+  }
+
+  // A turn of a fold that does not fit, 0: all do. Turns far from each other first: small ones move
+  // nothing far.
+  [[nodiscard]] std::int32_t misfitting_turn(const SymmetryAxis& axis, std::int32_t n) const {
+    for (std::int32_t stride = n / 2; stride > 0; stride /= 2) {
+      for (std::int32_t k = stride; k < n; k += 2 * stride) {
+        if (!shape_.fits(axis, 2 * std::numbers::pi * k / n, tolerance_)) return k;
+      }
+    }
+    for (std::int32_t k = 1; k < n; ++k) {
+      if (!shape_.fits(axis, 2 * std::numbers::pi * k / n, tolerance_)) return k;
+    }
+    return 0;
   }
 
   [[nodiscard]] bool fits_odd_angles(const SymmetryAxis& axis) const {

@@ -95,17 +95,19 @@ void ShapeSymmetry::choose_samples() {
 }
 
 // Each near the one before, so that a search can begin where the last one ended.
-std::vector<Point3> ShapeSymmetry::samples_for(std::int32_t fold) const {
+std::span<const Point3> ShapeSymmetry::samples_for(std::int32_t fold) const {
+  if (samples_fold_ == fold) return samples_;
   const std::size_t samples =
       std::max(kLeastSamples, kMostDistances / static_cast<std::size_t>(fold));
   const auto first = [](const std::vector<Point3>& points, std::size_t count) {
     return std::span<const Point3>(points).first(std::min(points.size(), count));
   };
   const auto vertices = first(vertices_, samples), spread = first(spread_, samples / 4);
-  std::vector<Point3> chosen(vertices.begin(), vertices.end());
-  chosen.insert(chosen.end(), spread.begin(), spread.end());
-  sort_along_hilbert_curve(chosen);
-  return chosen;
+  samples_.assign(vertices.begin(), vertices.end());
+  samples_.insert(samples_.end(), spread.begin(), spread.end());
+  sort_along_hilbert_curve(samples_);
+  samples_fold_ = fold;
+  return samples_;
 }
 
 Result<ShapeError> ShapeSymmetry::turn_error(const SymmetryAxis& axis,
@@ -113,15 +115,7 @@ Result<ShapeError> ShapeSymmetry::turn_error(const SymmetryAxis& axis,
                                              std::int32_t fold,
                                              double enough,
                                              ExecutionContext& context) const {
-  return turn_error(samples_for(fold), axis, steps, fold, enough, context);
-}
-
-Result<ShapeError> ShapeSymmetry::turn_error(std::span<const Point3> samples,
-                                             const SymmetryAxis& axis,
-                                             std::int32_t steps,
-                                             std::int32_t fold,
-                                             double enough,
-                                             ExecutionContext& context) const {
+  const std::span<const Point3> samples = samples_for(fold);
   ShapeError worst;
   worst.steps = steps;
   const double angle = 2 * std::numbers::pi * steps / fold;
@@ -146,10 +140,9 @@ Result<ShapeError> ShapeSymmetry::error(const SymmetryAxis& axis,
                                         std::int32_t fold,
                                         double enough,
                                         ExecutionContext& context) const {
-  const std::vector<Point3> samples = samples_for(fold);
   ShapeError worst;
   for (std::int32_t k = 1; k < fold && worst.distance <= enough; ++k) {
-    auto turn = turn_error(samples, axis, k, fold, enough, context);
+    auto turn = turn_error(axis, k, fold, enough, context);
     if (!turn) return turn;
     if (turn->distance > worst.distance || worst.steps == 0) worst = *turn;
   }

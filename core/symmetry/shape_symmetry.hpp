@@ -67,19 +67,15 @@ class ShapeSymmetry {
 
  private:
   void choose_samples();
-  [[nodiscard]] std::vector<Point3> samples_for(std::int32_t fold) const;
-  [[nodiscard]] Result<ShapeError> turn_error(std::span<const Point3> samples,
-                                              const SymmetryAxis& axis,
-                                              std::int32_t steps,
-                                              std::int32_t fold,
-                                              double enough,
-                                              ExecutionContext& context) const;
+  [[nodiscard]] std::span<const Point3> samples_for(std::int32_t fold) const;
 
   const IndexedSurface& surface_;
   double diameter_;
   TriangleTree tree_;
-  std::vector<Point3> vertices_;  // all, in random order: any first part is a fair sample
-  std::vector<Point3> spread_;    // random points, evenly over the area
+  std::vector<Point3> vertices_;         // all, in random order: any first part is a fair sample
+  std::vector<Point3> spread_;           // random points, evenly over the area
+  mutable std::vector<Point3> samples_;  // of fold samples_fold_
+  mutable std::int32_t samples_fold_ = 0;
   mutable std::vector<std::size_t> telling_;  // samples of `fits`, the last that failed first
 };
 

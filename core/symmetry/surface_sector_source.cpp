@@ -20,10 +20,24 @@
 namespace symcell {
 namespace {
 
-// Vertices nearer to a cut than these shares of the tolerance are moved onto it. The first is what
-// worked best on real files; the others are for those it fails on.
-constexpr std::array<double, 3> kSnapShares = {0.3, 1, 0};
-constexpr std::int32_t kCandidatesPerSnap = 12;
+// Vertices nearer to a cut than a share of the tolerance are moved onto it. The first way is what
+// worked best on real files; the others are for those it fails on. Wide tolerances move more than
+// narrow sectors and small features bear: then less of them is used.
+struct Way {
+  double snap_share;
+  double tolerance_share;
+  std::int32_t cuts;
+};
+constexpr std::array<Way, 7> kWays = {{{0.3, 1, 12},
+                                       {1, 1, 4},
+                                       {0, 1, 6},
+                                       {0.3, 0.25, 5},
+                                       {0, 0.25, 4},
+                                       {0.3, 0.06, 5},
+                                       {0, 0.06, 4}}};
+// Cuts whose curves differ by more than so many tolerances do not match: of use are tolerances of
+// half the symmetry error and above.
+constexpr double kMatchTolerances = 2;
 // Vertices of the two cut curves nearer than this share of the tolerance are one.
 constexpr double kMergeShare = 0.3;
 // Coordinates come in single precision or with six digits: noise as a share of the largest one, and
@@ -55,8 +69,10 @@ constexpr double kNarrowFactor = 1.5;
 constexpr double kSquareRound = 2;
 // Of its longest side: no triangle counts as flatter.
 constexpr double kLeastHeight = 1e-4;
-// A sector's volume times n against the input's.
+// A sector's volume times n against the input's: of the volume, or of the shell as thick as the
+// tolerance that the surface may lie in.
 constexpr double kVolumeRel = 1e-3;
+constexpr double kShellShare = 0.5;
 
 IndexedSurface restored_sector(const QuotientSurface& s) {
   const RotationTable rotations(s.fold);
@@ -170,6 +186,7 @@ SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean,
       repairs_(std::move(clean.repairs)),
       tolerance_(tolerance),
       volume_(clean.volume),
+      area_(clean.area),
       full_(std::move(clean.surface)) {
   double largest = 0;
   for (Point3& p : full_.points) {
@@ -186,7 +203,7 @@ SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean,
 // its own; the same angles with each way of snapping.
 void SurfaceSectorSource::choose_candidates() {
   if (symmetry_.fold == 1) {
-    candidates_.push_back({0, 0});
+    candidates_.push_back({0, 0, tolerance_});
     return;
   }
   const double sector = 2 * std::numbers::pi / symmetry_.fold;
@@ -209,11 +226,17 @@ void SurfaceSectorSource::choose_candidates() {
     return a.width != b.width ? a.width > b.width : a.middle < b.middle;
   });
   Random random(1);
-  for (const double snap : kSnapShares) {
-    for (std::int32_t i = 0; i < kCandidatesPerSnap; ++i) {
+  for (const Way& way : kWays) {
+    const double tolerance = way.tolerance_share * tolerance_;
+    if (way.tolerance_share < 1 &&
+        kMatchTolerances * tolerance < symmetry_.error_rel * symmetry_.diameter) {
+      break;
+    }
+    for (std::int32_t i = 0; i < way.cuts; ++i) {
       const auto which = std::min(static_cast<std::size_t>(i), gaps.size() - 1);
       const auto copy = static_cast<std::int32_t>(random.next() % symmetry_.fold);
-      candidates_.push_back({gaps[which].middle + copy * sector, snap * tolerance_});
+      candidates_.push_back(
+          {gaps[which].middle + copy * sector, way.snap_share * tolerance, tolerance});
     }
   }
 }
@@ -222,6 +245,7 @@ void SurfaceSectorSource::choose_candidates() {
 // symmetry error has used up from place to place: a result that is no longer the input's shape is
 // none.
 Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
+                                                 double tolerance,
                                                  const FlatnessTolerances& flatness,
                                                  ExecutionContext& context) const {
   const QuotientSurface given = surface;
@@ -231,7 +255,7 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
   std::size_t made = 0;
   for (const double share : kImproveShares) {
     QuotientSurface improved = given;
-    if (auto done = improve_surface(improved, share * tolerance_, flatness, context); !done) {
+    if (auto done = improve_surface(improved, share * tolerance, flatness, context); !done) {
       return tl::unexpected<Error>(done.error());
     }
     const SectorShape shape = shape_of(improved);
@@ -262,7 +286,8 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
 Result<void> SurfaceSectorSource::check_shape(const QuotientSurface& surface,
                                               ExecutionContext& context) const {
   const double volume = full_volume(surface);
-  if (!(std::abs(volume - volume_) <= kVolumeRel * std::abs(volume_))) {
+  const double most = std::max(kVolumeRel * std::abs(volume_), kShellShare * tolerance_ * area_);
+  if (!(std::abs(volume - volume_) <= most)) {
     return fail(ErrorCode::kInternal, "the sector's volume is wrong: " + describe_rounded(volume) +
                                           " for " + describe_rounded(volume_));
   }
@@ -318,15 +343,17 @@ Result<SolidSector> SurfaceSectorSource::sector(std::int32_t index,
   } else {
     auto patch = cut_wedge(full_, symmetry_.fold, candidate.start_angle, candidate.snap);
     if (!patch) return tl::unexpected<Error>(patch.error());
-    auto glued = glue_cuts(std::move(*patch), 2 * tolerance_, kMergeShare * tolerance_, context);
+    auto glued = glue_cuts(std::move(*patch), kMatchTolerances * candidate.tolerance,
+                           kMergeShare * candidate.tolerance, context);
     if (!glued) return tl::unexpected<Error>(glued.error());
     quotient = std::move(glued->surface);
   }
-  const FlatnessTolerances flatness{noise_, std::max(noise_, kFlatShareOfTolerance * tolerance_)};
+  const FlatnessTolerances flatness{noise_,
+                                    std::max(noise_, kFlatShareOfTolerance * candidate.tolerance)};
   if (auto flat = flatten_planar_patches(quotient, flatness, context); !flat) {
     return tl::unexpected<Error>(flat.error());
   }
-  const auto shape = improve(quotient, flatness, context);
+  const auto shape = improve(quotient, candidate.tolerance, flatness, context);
   if (!shape) return tl::unexpected<Error>(shape.error());
   auto sector = quotient_to_sector(quotient);
   if (sector) {

@@ -45,10 +45,13 @@ class SurfaceSectorSource final : public SectorSource {
  private:
   struct Candidate {
     double start_angle;
-    double snap;  // length
+    // Lengths.
+    double snap;
+    double tolerance;
   };
   void choose_candidates();
   [[nodiscard]] Result<SectorShape> improve(QuotientSurface& surface,
+                                            double tolerance,
                                             const FlatnessTolerances& flatness,
                                             ExecutionContext& context) const;
   [[nodiscard]] Result<void> check_shape(const QuotientSurface& surface,
@@ -61,6 +64,7 @@ class SurfaceSectorSource final : public SectorSource {
   double tolerance_;
   double noise_;                 // of coordinates
   double volume_;                // of the input
+  double area_;                  // likewise
   IndexedSurface full_;          // local frame
   TriangleTree tree_;            // of full_
   std::vector<Point3> samples_;  // of full_
