@@ -9,9 +9,9 @@ namespace {
 
 // Sectors that are tried before a model is given up.
 constexpr std::int32_t kMaxSectors = 40;
-// Triangles that are worked on for the sake of a better cut, and candidates that are compared.
+// Triangles that are worked on for the sake of a better cut, and sectors that are compared.
 constexpr std::size_t kCompareBudget = 150'000;
-constexpr std::int32_t kMostCompared = 8;
+constexpr std::size_t kMostCompared = 8;
 // Sectors that promise a mesh larger by this factor than one that went well are left out.
 constexpr double kMostCostlier = 2.5;
 
@@ -35,7 +35,7 @@ SolidStarts::SolidStarts(const SectorSource& source)
 bool SolidStarts::is_worth_comparing() const {
   if (next_ == 0) return true;
   const std::size_t one_more = effort_ / static_cast<std::size_t>(next_);
-  return next_ < std::min(most_, kMostCompared) && effort_ > 0 &&
+  return next_ < most_ && sectors_.size() < kMostCompared && effort_ > 0 &&
          effort_ + one_more <= kCompareBudget;
 }
 

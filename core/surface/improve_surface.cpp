@@ -45,6 +45,13 @@ constexpr double kFitShape = 0.95;
 // tetrahedron fits: where such are left, the surface may deviate more by this factor.
 constexpr double kNarrowCorner = 20.71 * std::numbers::pi / 180;
 constexpr double kNarrowRelief = 2;
+// Moves that widen one, as shares of a side, in so many directions; and by what factor it must get
+// wider to count.
+constexpr std::array<double, 4> kSteps = {0.4, 0.2, 0.1, 0.05};
+constexpr int kDirections = 8;
+constexpr double kWider = 1.03;
+// Ways to one neighbour, seen from two triangles, differ by rounding: squared, of their length.
+constexpr double kSameWay = 1e-12;
 // But may not get flatter triangles than this for it.
 constexpr double kOpenedShape = 0.2;
 // Rounding that a vertex may be off the planes of its patches, of the extent.
@@ -540,19 +547,97 @@ class Improver {
         return true;
       }
     }
+    bool moved = false;
     for (const OrbitVertex& corner : mesh_.surface().triangles[t]) {
-      const auto place = middle_of_neighbours(corner.orbit);
-      if (!place) continue;
-      for (const double share : {1.0, 0.5}) {
-        const Point3 from = mesh_.surface().points[corner.orbit];
-        const auto hit = guard_.nearest(from + share * (*place - from), 10 * guard_.most());
-        if (hit.triangle < 0) continue;
-        if (!opens(mesh_.star(corner.orbit), mesh_.plan_move(corner.orbit, hit.point))) continue;
-        mesh_.move(corner.orbit, hit.point);
-        return true;
+      if (!mesh_.alive(t) || narrow_corners(mesh_.points(t)) == 0) break;
+      for (const Point3& place : places_near(corner.orbit)) {
+        if (!widens(corner.orbit, place)) continue;
+        mesh_.move(corner.orbit, place);
+        moved = true;
       }
     }
-    return false;
+    return moved;
+  }
+
+  // Where a vertex may go: on the old surface around its place, or along the crease or cut that it
+  // lies on.
+  [[nodiscard]] std::vector<Point3> places_near(std::int32_t v) const {
+    std::vector<Point3> places;
+    if (mesh_.surface().on_axis[v] != 0) return places;
+    const Point3 from = mesh_.surface().points[v];
+    std::vector<Point3> marked;  // ways to the neighbours along marked sides
+    std::vector<Point3> all;
+    Point3 normal;
+    bool flat = false;
+    for (const std::int32_t t : mesh_.star(v)) {
+      flat = flat || planar(t);
+      const auto p = mesh_.points(t);
+      normal = normal + mesh_.in_frame_of(v, t, area_normal(p[0], p[1], p[2]));
+      for (std::int32_t i = 0; i < 3; ++i) {
+        const std::int32_t j = (i + 1) % 3;
+        const OrbitVertex a = mesh_.surface().triangles[t][i], b = mesh_.surface().triangles[t][j];
+        if (a.orbit != v && b.orbit != v) continue;
+        const Point3 way = mesh_.in_frame_of(v, t, a.orbit == v ? p[j] - p[i] : p[i] - p[j]);
+        all.push_back(way);
+        const bool known = std::any_of(marked.begin(), marked.end(), [&](const Point3& m) {
+          return squared_distance(m, way) <= kSameWay * dot(way, way);
+        });
+        if (mesh_.mark(t, i) != 0 && !known) marked.push_back(way);
+      }
+    }
+    if (marked.size() == 2) {
+      for (const double step : kSteps) {
+        for (const Point3& way : marked) places.push_back(from + step * way);
+      }
+    }
+    if (!marked.empty() || flat || mesh_.surface().on_cut[v] != 0 || all.empty()) return places;
+    const Point3 across = cross(normal, all.front());
+    const double sine = length(across), size = length(all.front());
+    if (!(sine > 0)) return places;
+    const Point3 u = (size / sine) * across,
+                 w = (size / (length(normal) * sine)) * cross(normal, across);
+    for (const double step : kSteps) {
+      for (int k = 0; k < kDirections; ++k) {
+        const double angle = 2 * std::numbers::pi * k / kDirections;
+        const Point3 aim = from + step * (std::cos(angle) * u + std::sin(angle) * w);
+        const auto hit = guard_.nearest(aim, 10 * guard_.most());
+        if (hit.triangle >= 0) places.push_back(hit.point);
+      }
+    }
+    return places;
+  }
+
+  // Whether the star has fewer narrow corners with its vertex there, or as many and a wider worst
+  // one; if so, the guard knows of it.
+  bool widens(std::int32_t v, Point3 place) {
+    const std::vector<std::int32_t> gone = mesh_.star(v);
+    const std::vector<PlannedTriangle> planned = mesh_.plan_move(v, place);
+    int before = 0, after = 0;
+    double worst_before = 4, worst_after = 4, flattest = 1, allowed = kOpenedShape;
+    for (const std::int32_t t : gone) {
+      const auto p = mesh_.points(t);
+      allowed = std::min(allowed, shape_of(p));
+      if (planar(t)) continue;
+      before += narrow_corners(p);
+      worst_before = std::min(worst_before, narrowest(p));
+    }
+    for (const PlannedTriangle& p : planned) {
+      if (planar(p.id) && !keeps_plane(p)) return false;
+      flattest = std::min(flattest, shape_of(p.points));
+      if (planar(p.id)) continue;
+      after += narrow_corners(p.points);
+      worst_after = std::min(worst_after, narrowest(p.points));
+    }
+    if (after > before || flattest < allowed) return false;
+    if (worst_after <= kWider * worst_before && after == before) return false;
+    if (!guard_.allows(gone, planned)) return false;
+    commit(gone, planned);
+    return true;
+  }
+
+  static double narrowest(const std::array<Point3, 3>& p) {
+    return std::min(
+        {angle_at(p[0], p[1], p[2]), angle_at(p[1], p[2], p[0]), angle_at(p[2], p[0], p[1])});
   }
 
   // Whether there are fewer narrow corners then; if so, the guard knows of it.

@@ -17,6 +17,9 @@ namespace {
 
 // Folds looked for; a larger one can be given.
 constexpr std::int32_t kMostDetected = 400;
+// Where more folds fit at a first look, the shape is nearly one of revolution, and those count that
+// fit much better than arbitrary angles.
+constexpr std::size_t kManyFolds = 24;
 // The first look is about an axis not yet refined.
 constexpr double kRoughTolerances = 6;
 // Principal moments that differ by less tell no axis.
@@ -314,11 +317,17 @@ class Detector {
     }
     result.axis = refined(candidate, leader);
     folds = quick_folds(result.axis, tolerance_);
-    if (!folds.empty() && fits_odd_angles(result.axis)) {
-      folds = outstanding(result.axis, folds);
-      if (folds.empty()) {
+    const bool revolution = !folds.empty() && fits_odd_angles(result.axis);
+    if (revolution || folds.size() > kManyFolds) {
+      auto better = outstanding(result.axis, folds);
+      if (better.empty() && revolution) {
         result.revolution = true;
         return result;
+      }
+      if (better.empty()) {
+        folds.resize(kManyFolds);
+      } else {
+        folds = std::move(better);
       }
     }
     std::vector<FoldCandidate>& rungs = result.folds;
@@ -385,8 +394,15 @@ class Detector {
     double odd = 0;
     for (const double share : kOddAngles) odd = std::max(odd, mean(share));
     std::vector<std::int32_t> better;
+    // By the turns of a fold that come near those angles: small ones move nothing far.
+    const auto stands_out = [&](std::int32_t n) {
+      return std::all_of(kOddAngles.begin(), kOddAngles.end(), [&](double share) {
+        const double turn = std::max(1.0, std::round(share * n)) / n;
+        return std::max(mean(turn), kNoiseRel * diameter_) <= odd / kDominance;
+      });
+    };
     for (const std::int32_t n : folds) {
-      if (std::max(mean(1.0 / n), kNoiseRel * diameter_) <= odd / kDominance) better.push_back(n);
+      if (stands_out(n)) better.push_back(n);
     }
     return better;
   }
