@@ -12,6 +12,12 @@ constexpr std::int32_t kMaxSectors = 40;
 // Triangles that are worked on for the sake of a better cut, and sectors that are compared.
 constexpr std::size_t kCompareBudget = 150'000;
 constexpr std::size_t kMostCompared = 8;
+// After so many triangles a sector without narrow corners is good enough, and at once where two in
+// a row cost the same up to this factor.
+constexpr std::size_t kEnoughCompared = 10'000;
+constexpr double kAlike = 1.001;
+// What a sector costs more than the one before, for the same triangles.
+constexpr double kLaterCost = 0.05;
 // Sectors that promise a mesh larger by this factor than one that went well are left out.
 constexpr double kMostCostlier = 2.5;
 
@@ -39,6 +45,13 @@ bool SolidStarts::is_worth_comparing() const {
          effort_ + one_more <= kCompareBudget;
 }
 
+// Whether the last cut made no difference.
+bool SolidStarts::cuts_are_alike() const {
+  if (sectors_.size() < 2) return false;
+  const double ratio = sectors_.back().meshing_cost / sectors_[sectors_.size() - 2].meshing_cost;
+  return 1 / kAlike < ratio && ratio < kAlike;
+}
+
 Result<void> SolidStarts::cut_one_more(ExecutionContext& context) {
   auto sector = source_.sector(next_++, context);
   effort_ += sector ? std::max(source_.effort(), sector->triangles_made) : source_.effort();
@@ -54,7 +67,12 @@ Result<InitialTetrahedralization> SolidStarts::next(ExecutionContext& context) {
   if (next_ == 0) {
     while (is_worth_comparing()) {
       if (auto ok = cut_one_more(context); !ok) return tl::unexpected<Error>(ok.error());
-      if (!sectors_.empty() && sectors_.back().narrow_corners == 0) break;
+      const bool good = !sectors_.empty() && sectors_.back().narrow_corners == 0;
+      if (good && (effort_ >= kEnoughCompared || cuts_are_alike())) break;
+    }
+    // Among much the same the earlier is the better one: it was cut where there is more room.
+    for (std::size_t i = 0; i < sectors_.size(); ++i) {
+      sectors_[i].meshing_cost *= 1 + kLaterCost * static_cast<double>(i);
     }
     std::stable_sort(
         sectors_.begin(), sectors_.end(),

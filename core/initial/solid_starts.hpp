@@ -30,6 +30,7 @@ class SolidStarts {
 
  private:
   [[nodiscard]] bool is_worth_comparing() const;
+  [[nodiscard]] bool cuts_are_alike() const;
   [[nodiscard]] Result<void> cut_one_more(ExecutionContext& context);
 
   const SectorSource& source_;
