@@ -13,11 +13,6 @@ constexpr int kMaxWalk = 2000;
 // Cavities larger than this come from huge flat tetrahedra of the first mesh: the smallest cavity
 // will do there.
 constexpr std::size_t kMaxCavity = 1500;
-// Tetrahedra that leave a cavity one after the other, each at the cost of all: where so many have
-// to, the point is in the wrong place.
-constexpr int kMaxDrops = 60;
-// And so many tetrahedra looked at for it, in large cavities.
-constexpr std::size_t kMaxDropWork = 20'000;
 // Share of the way by which a point may lie in front of a subfacet and yet count as on it.
 constexpr double kOnSubfacet = 1e-6;
 // More tetrahedra than this do not meet at a point or edge of a sane mesh.
@@ -365,7 +360,10 @@ bool SolidEditor::add_seed(Cavity& cavity, std::size_t index) {
   return true;
 }
 
-bool SolidEditor::find_cavity(Point3 p, const SolidLocation& where, Cavity& cavity) {
+bool SolidEditor::find_cavity(Point3 p,
+                              const SolidLocation& where,
+                              Cavity& cavity,
+                              std::size_t most_dropped) {
   cavity.point = p;
   cavity.where = where;
   point_on_axis_ = where.kind == SolidLocation::Kind::kOnEdge && mesh_.on_axis(where.edge[0].v) &&
@@ -373,8 +371,7 @@ bool SolidEditor::find_cavity(Point3 p, const SolidLocation& where, Cavity& cavi
   seed_cavity(cavity);
   find_own_facets(cavity);
   grow_cavity(cavity);
-  int drops = 0;
-  std::size_t work = 0;
+  std::size_t dropped = 0;
   while (true) {
     flat_face_ = 4;
     std::int64_t bad = gather_boundary(cavity);
@@ -392,9 +389,9 @@ bool SolidEditor::find_cavity(Point3 p, const SolidLocation& where, Cavity& cavi
       }
       continue;
     }
-    work += cavity.tets.size();
-    if (++drops > kMaxDrops || work > kMaxDropWork) return false;
     if (hidden_.empty()) hidden_.push_back(static_cast<std::size_t>(bad));
+    dropped += hidden_.size();
+    if (dropped > most_dropped) return false;
     drop(cavity, hidden_);
   }
   double nearest2 = std::numeric_limits<double>::infinity();

@@ -83,8 +83,14 @@ class SolidEditor {
             mesh_.lift(mesh_.corner(c, 2)), mesh_.lift(mesh_.corner(c, 3))};
   }
 
-  // The cavity of `p`, false if not even the smallest one would do (p too near a vertex or a face).
-  [[nodiscard]] bool find_cavity(Point3 p, const SolidLocation& where, Cavity& cavity);
+  // The cavity of `p`, false if not even the smallest one would do (p too near a vertex or a face),
+  // or if more than `most_dropped` of the tetrahedra whose spheres hold p cannot be seen from it:
+  // then p is in the wrong place.
+  static constexpr std::size_t kManyDropped = 40;
+  [[nodiscard]] bool find_cavity(Point3 p,
+                                 const SolidLocation& where,
+                                 Cavity& cavity,
+                                 std::size_t most_dropped = kManyDropped);
   // Inserts the cavity's point; kNoVertex if the mesh refuses. New tetrahedra: mesh().added_ids().
   // `parent`: segment or facet of a point on one.
   static constexpr VertexId kNoVertex = -1;

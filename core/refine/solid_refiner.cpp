@@ -156,6 +156,13 @@ bool SolidRefiner::allowed(const Cavity& cavity, const Cause& cause, double shar
   return nearest >= cause.shortest || (cause.depth < max_depth_ && !cause.spare);
 }
 
+// Bounds on size must be kept, however the cavity has to be cut down; for the sake of shape a point
+// that many tetrahedra hide from does no good.
+bool SolidRefiner::find_cavity(Point3 p, const SolidLocation& where, const Cause& cause) {
+  constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+  return editor_.find_cavity(p, where, cavity_, cause.size ? kAny : SolidEditor::kManyDropped);
+}
+
 SolidRefiner::Outcome SolidRefiner::insert(const Cavity& cavity,
                                            SolidVertexKind kind,
                                            std::int32_t parent,
@@ -188,7 +195,7 @@ SolidRefiner::Outcome SolidRefiner::treat(TetId t) {
   if (walk.blocked) return split_subfacet({walk.at, walk.face}, cause);
   SolidLocation where;
   where.at = walk.at;
-  if (!editor_.find_cavity(p, where, cavity_)) return Outcome::kRefused;
+  if (!find_cavity(p, where, cause)) return Outcome::kRefused;
   const Encroached e = encroached_by(cavity_, true);
   if (e.what == Encroached::What::kSubsegment) return split_segment(e.at, e.a, e.b, cause);
   if (e.what == Encroached::What::kSubfacet) return split_subfacet(e.subfacet, cause);
@@ -311,7 +318,7 @@ SolidRefiner::Outcome SolidRefiner::split_subfacet(Subfacet s, const Cause& caus
   where.kind = SolidLocation::Kind::kOnSubfacet;
   where.at = s.at;
   where.face = s.face;
-  if (!editor_.find_cavity(p, where, cavity_)) return Outcome::kRefused;
+  if (!find_cavity(p, where, cause)) return Outcome::kRefused;
   const Encroached e = encroached_by(cavity_, false);
   if (e.what == Encroached::What::kSubsegment) return split_segment(e.at, e.a, e.b, cause);
   if (!allowed(cavity_, cause, kFacetShare)) return Outcome::kRefused;
@@ -345,7 +352,7 @@ SolidRefiner::Outcome SolidRefiner::split_too_large(TetId t) {
   for (std::uint32_t i = 0; i < 4; ++i) middle = middle + 0.25 * mesh_.corner_point(t, i);
   SolidLocation where;
   where.at = {t, 0};
-  if (!editor_.find_cavity(middle, where, cavity_)) return Outcome::kRefused;
+  if (!find_cavity(middle, where, cause)) return Outcome::kRefused;
   const Outcome done = insert(cavity_, SolidVertexKind::kFree, -1, false, cause);
   if (done == Outcome::kInserted) ++counters_.interior_points;
   return done;
@@ -358,7 +365,7 @@ SolidRefiner::Outcome SolidRefiner::split_edge(TetId t, Corner a, Corner b, cons
   where.at = {t, 0};
   where.edge = {a, b};
   const Point3 middle = 0.5 * (mesh_.lift(a) + mesh_.lift(b));
-  if (!editor_.find_cavity(middle, where, cavity_)) return Outcome::kRefused;
+  if (!find_cavity(middle, where, cause)) return Outcome::kRefused;
   if (!allowed(cavity_, cause, kInteriorShare)) return Outcome::kRefused;
   // An edge inside a facet has subfacets of that one facet only.
   const std::int32_t facet = cavity_.outline.empty() ? kNoFacet : cavity_.outline.front().facet;
@@ -391,7 +398,7 @@ SolidRefiner::Outcome SolidRefiner::split_segment(TetCopy at,
   where.at = at;
   where.edge = {a, b};
   const Point3 middle = (1 - at_share) * p + at_share * q;
-  if (!editor_.find_cavity(middle, where, cavity_)) return Outcome::kRefused;
+  if (!find_cavity(middle, where, cause)) return Outcome::kRefused;
   if (!allowed(cavity_, cause, kSegmentShare)) return Outcome::kRefused;
   const bool axis = mesh_.on_axis(a.v) && mesh_.on_axis(b.v);
   const Outcome done = insert(cavity_, SolidVertexKind::kSegment, segment, axis, cause);

@@ -107,6 +107,7 @@ class SolidRefiner {
   [[nodiscard]] Outcome split_segment(TetCopy at, Corner a, Corner b, const Cause& cause);
   [[nodiscard]] Outcome split_too_large(TetId t);
   Outcome split_edge(TetId t, Corner a, Corner b, const Cause& cause);
+  [[nodiscard]] bool find_cavity(Point3 p, const SolidLocation& where, const Cause& cause);
   [[nodiscard]] bool allowed(const Cavity& cavity, const Cause& cause, double share) const;
   [[nodiscard]] Outcome insert(const Cavity& cavity,
                                SolidVertexKind kind,

@@ -98,14 +98,53 @@ TEST(SolidStarts, TheCheapestOfThoseComparedComesFirst) {
   EXPECT_EQ(starts.effort(), 300U);
 }
 
-TEST(SolidStarts, ComparingEndsWhereNoCornerIsNarrow) {
-  const ListedSectors source({{30, 4}, {40, 0}, {20, 2}}, 100);
+TEST(SolidStarts, ComparingEndsWhereNoCornerIsNarrowAfterSomeEffort) {
+  for (const std::size_t effort : {100, 6'000}) {
+    const ListedSectors source({{30, 4}, {40, 0}, {20, 2}}, effort);
+    SolidStarts starts(source);
+    ExecutionContext context;
+    const auto solid = starts.next(context);
+    ASSERT_TRUE(solid) << solid.error().message;
+    const bool all = effort < 1'000;
+    EXPECT_EQ(source.asked.size(), all ? 3U : 2U);
+    EXPECT_EQ(origin(*solid), all ? 2 : 0);
+  }
+}
+
+TEST(SolidStarts, ComparingEndsWhereCutsMakeNoDifference) {
+  const ListedSectors source({{20, 0}, {20, 0}, {10, 0}}, 100);
   SolidStarts starts(source);
   ExecutionContext context;
   const auto solid = starts.next(context);
   ASSERT_TRUE(solid) << solid.error().message;
-  EXPECT_EQ(source.asked, (std::vector<std::int32_t>{0, 1}));
+  EXPECT_EQ(source.asked.size(), 2U);
   EXPECT_EQ(origin(*solid), 0);
+}
+
+TEST(SolidStarts, TheEarlierOfMuchTheSameComesFirst) {
+  const ListedSectors source({{20, 1}, {19.5, 1}, {30, 1}}, 100);
+  SolidStarts starts(source);
+  ExecutionContext context;
+  for (const std::int32_t expected : {0, 1, 2}) {
+    const auto solid = starts.next(context);
+    ASSERT_TRUE(solid) << solid.error().message;
+    EXPECT_EQ(origin(*solid), expected);
+  }
+}
+
+// Of the first ones that cannot be cut: as many others are looked at.
+TEST(SolidStarts, SectorsAreComparedNotAttempts) {
+  ListedSectors::Entry uncut;
+  uncut.cut = false;
+  std::vector<ListedSectors::Entry> entries(10, uncut);
+  entries.push_back({30, 4});
+  entries.push_back({10, 1});
+  const ListedSectors source(entries, 100);
+  SolidStarts starts(source);
+  ExecutionContext context;
+  const auto solid = starts.next(context);
+  ASSERT_TRUE(solid) << solid.error().message;
+  EXPECT_EQ(origin(*solid), 11);
 }
 
 TEST(SolidStarts, LargeSurfacesAreNotCompared) {

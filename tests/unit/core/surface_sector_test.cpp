@@ -88,6 +88,16 @@ TEST(SurfaceSector, OfSkewAxesFarFromTheOrigin) {
   expect_good_sector(surface, with_fold(5, origin, direction), prism_volume(shape), 1e-6);
 }
 
+// A tolerance as wide as the sector is near the axis: less of it is used then.
+TEST(SurfaceSector, WideTolerancesLeaveNarrowSectorsWhole) {
+  PrismShape shape;
+  shape.fold = 24;
+  shape.bore = 0;
+  MeshOptions options = with_fold(shape.fold);
+  options.symmetry_tolerance_rel = 0.05;
+  expect_good_sector(asymmetric_prism(shape, 5), options, prism_volume(shape), 0.05);
+}
+
 TEST(SurfaceSector, KeepsCavities) {
   PrismShape outer;
   outer.bore = 0;

@@ -74,6 +74,21 @@ TEST(SurfaceSymmetry, OfARevolutionIsAmbiguousUnlessGiven) {
   EXPECT_EQ((*accepted)->symmetry().fold, 6);
 }
 
+// Within a wide tolerance every small turn fits, and most folds at a first look.
+TEST(SurfaceSymmetry, NearRevolutionsHaveTheFoldThatStandsOut) {
+  for (const std::int32_t fold : {9, 14, 30}) {
+    PrismShape shape;
+    shape.fold = fold;
+    shape.inner_tip = 1.8;
+    MeshOptions options;
+    options.symmetry_tolerance_rel = 0.02;
+    ExecutionContext context;
+    const auto source = symmetrise_surface(asymmetric_prism(shape, 3), options, context);
+    ASSERT_TRUE(source) << source.error().message;
+    EXPECT_EQ((*source)->symmetry().fold, fold);
+  }
+}
+
 TEST(SurfaceSymmetry, OfNothingIsFoldOne) {
   TriangleSurface surface = box_surface({0, 0, 0}, {3, 2, 1});
   for (Point3& p : surface.vertices) {
