@@ -33,6 +33,14 @@ void SolidImprover::allow_detours(double goal) {
                   static_cast<std::uint64_t>(kDetoursATet * static_cast<double>(mesh_.tet_count()));
 }
 
+bool SolidImprover::is_small() const {
+  return mesh_.tet_count() < kSmallMesh;
+}
+
+bool SolidImprover::inserts(std::size_t way) const {
+  return way % kOwnWays == (is_small() ? kOwnWays - 1 : 0);
+}
+
 bool SolidImprover::open_detour(TetId t, std::size_t way) {
   if (way >= kOwnWays) {
     const HalfFace behind = mesh_.tet(t).nb[way / kOwnWays - 1];
@@ -40,8 +48,8 @@ bool SolidImprover::open_detour(TetId t, std::size_t way) {
     t = tet_of(behind);
     way %= kOwnWays;
   }
-  if (mesh_.tet_count() < kSmallMesh) way = (way + 1) % kOwnWays;
-  if (way == 0) return surgery_.insert_point(t);
+  if (inserts(way)) return surgery_.insert_point(t);
+  if (is_small()) ++way;
   if (way < 7) return surgery_.remove_edge(t, kEdgeCorners[way - 1][0], kEdgeCorners[way - 1][1]);
   if (way < 11) return surgery_.remove_face(t, static_cast<std::uint32_t>(way - 7));
   const auto pair = static_cast<std::uint32_t>(way - 11);
@@ -97,11 +105,12 @@ bool SolidImprover::detour(TetId t) {
     surgery_.set_lenient(true);
     const bool opened = open_detour(t, way);
     surgery_.set_lenient(false);
+    // The place for a new vertex is searched for long before it is known that there is none.
+    if (opened || inserts(way)) --detours_left_;
     if (!opened) {
       surgery_.keep_trial();  // of nothing
       continue;
     }
-    --detours_left_;
     touched_.assign(surgery_.touched().begin(), surgery_.touched().end());
     const double worst = mend_detour(detour_goal_);
     const bool will_do = std::all_of(touched_.begin(), touched_.end(), [&](TetId u) {

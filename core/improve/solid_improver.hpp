@@ -68,6 +68,8 @@ class SolidImprover {
   [[nodiscard]] bool change(TetId t, Means means);
   [[nodiscard]] bool detour(TetId t);
   [[nodiscard]] bool open_detour(TetId t, std::size_t way);
+  [[nodiscard]] bool is_small() const;
+  [[nodiscard]] bool inserts(std::size_t way) const;
   [[nodiscard]] double mend_detour(double goal);
 
   SolidSurgery& surgery_;
