@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <type_traits>
 #include <variant>
 
 #include "core/cells/verify_support.hpp"
@@ -112,6 +113,20 @@ class Verifier {
     return std::hypot(2 * reach, high - low);
   }
 
+  // The model's own where it is a solid: a box round a skew solid is larger than one along its
+  // axis.
+  [[nodiscard]] double model_diameter() const {
+    return std::visit(
+        [this](const auto& model) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(model)>, Pslg>) {
+            return diameter_;
+          } else {
+            return internal::diameter(model.vertices);
+          }
+        },
+        *model_);
+  }
+
   std::vector<char> check_model(const FacetedMesh& full) {
     const std::vector<char> none(full.groups.size(), 0);
     if (model_ == nullptr) {
@@ -125,7 +140,7 @@ class Verifier {
     }
     const double share = options_.model_tolerance_rel.value_or(
         kind == ModelKind::kSurface ? kSurfaceToleranceRel : kExactToleranceRel);
-    const double tolerance = std::max(share * diameter_, tolerance_);
+    const double tolerance = std::max(share * model_diameter(), tolerance_);
     return std::visit(
         [&](const auto& model) { return internal::check_model(full, model, tolerance, checks_); },
         *model_);
