@@ -162,7 +162,6 @@ Result<void> improve(SolidEditor& editor,
   SolidImprover improver(surgery, criteria, context);
   const double costly_deg = std::max(kCostlyGoalDeg, options.min_dihedral_deg);
   const double costly_goal = std::sin(costly_deg * std::numbers::pi / 180);
-  improver.allow_insertion(costly_goal);
   improver.allow_detours(costly_goal);
   // What could not be mended may be after its neighbours were.
   return improver.mend(goal, kLastPasses);

@@ -1,7 +1,7 @@
 // Detours: where no operation betters a tetrahedron, one that makes shapes worse may open the way
 // for others.
 #include <algorithm>
-#include <array>
+#include <limits>
 #include <queue>
 
 #include "core/improve/solid_improver.hpp"
@@ -57,7 +57,8 @@ bool SolidImprover::open_detour(TetId t, std::size_t way) {
   return surgery_.collapse(t, from, to, 0);
 }
 
-// Works on the worst of what the detour has touched, as long as that helps; the worst in the end.
+// Works on the worst of what the detour has touched, as long as that helps; the worst in the end,
+// -infinity if it is not worth the work.
 double SolidImprover::mend_detour(double goal) {
   std::priority_queue<Entry> queue;
   const auto enqueue = [&](TetId t) {
@@ -65,7 +66,9 @@ double SolidImprover::mend_detour(double goal) {
     if (k < goal) queue.push({k, t, mesh_.tet(t).version});
   };
   for (const TetId t : touched_) enqueue(t);
-  if (!queue.empty() && queue.top().key < -kHopelessExcess2 * kMustBeKept) return queue.top().key;
+  if (!queue.empty() && queue.top().key < -kHopelessExcess2 * kMustBeKept) {
+    return -std::numeric_limits<double>::infinity();
+  }
   for (int step = 0; !queue.empty() && step < kMostSteps; ++step) {
     const Entry e = queue.top();
     queue.pop();

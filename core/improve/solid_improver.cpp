@@ -7,6 +7,7 @@ namespace symcell {
 namespace {
 
 constexpr std::uint64_t kCheckEvery = 64;
+constexpr std::uint64_t kCheckEveryDetours = 4;  // a tetrahedron's detours take some milliseconds
 // Bound on the steps of one round, a tetrahedron: two operations cannot undo each other (each
 // betters the worst), but a round need not go on for what little is left.
 constexpr std::uint64_t kMaxStepsATet = 4;
@@ -69,8 +70,9 @@ Result<void> SolidImprover::work_on_worst(double goal, Means means) {
     if (mesh_.alive(t)) enqueue(t);
   }
   const std::uint64_t most = kMaxStepsATet * (mesh_.tet_count() + 100);
+  const std::uint64_t check_every = detours_left_ > 0 ? kCheckEveryDetours : kCheckEvery;
   for (std::uint64_t step = 0; !queue_.empty() && step < most; ++step) {
-    if (step % kCheckEvery == 0) {
+    if (step % check_every == 0) {
       if (auto ok = context_.check(mesh_.tet_count()); !ok) return ok;
     }
     const Entry e = queue_.top();
@@ -91,15 +93,13 @@ Result<void> SolidImprover::work_on_worst(double goal, Means means) {
 }
 
 bool SolidImprover::change(TetId t, Means means) {
-  const auto once = [&](bool done) {
-    if (done) touched_.assign(surgery_.touched().begin(), surgery_.touched().end());
-    return done;
-  };
-  if (once(improve(t, means))) return true;
+  if (improve(t, means)) {
+    touched_.assign(surgery_.touched().begin(), surgery_.touched().end());
+    return true;
+  }
   if (means == Means::kFlips) return false;
-  // Detours insert vertices as well; when too many were taken in vain, what is left is the input's.
-  if (detour_goal_ > 0) return detours_left_ > 0 && key(t) < detour_goal_ && detour(t);
-  return surgery_.shape(t) < insertion_goal_ && once(surgery_.insert_point(t));
+  // When too many were taken in vain, what is left is the input's.
+  return detours_left_ > 0 && key(t) < detour_goal_ && detour(t);
 }
 
 void SolidImprover::note_changes() {

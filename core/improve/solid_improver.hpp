@@ -32,10 +32,9 @@ class SolidImprover {
   // Works on tetrahedra whose shape is below `goal` or that break a bound, each until nothing
   // helps; in further passes on those whose neighbourhood has changed since they were given up.
   [[nodiscard]] Result<void> mend(double goal, int passes = 1);
-  // From now on mend() inserts vertices where nothing else helps a tetrahedron below `goal`.
-  void allow_insertion(double goal) { insertion_goal_ = goal; }
-  // And takes detours where a tetrahedron is below `goal`: an operation that makes shapes worse,
-  // then others, if the worst is better in the end.
+  // From now on mend() takes detours where nothing else helps a tetrahedron below `goal`: a new
+  // vertex or another operation that may make shapes worse, then others, if the worst is better in
+  // the end.
   void allow_detours(double goal);
   // Moves every vertex once.
   [[nodiscard]] Result<void> smooth_all();
@@ -77,7 +76,6 @@ class SolidImprover {
   const SolidCriteria& criteria_;
   ExecutionContext& context_;
   std::priority_queue<Entry> queue_;
-  double insertion_goal_ = -1;
   // By steps of this improver: when a tetrahedron was given up, when one at a vertex last changed.
   std::uint64_t steps_ = 0;
   std::vector<GivenUp> given_up_;

@@ -40,6 +40,7 @@ SolidStarts::SolidStarts(const SectorSource& source)
 // Whether a cut more is worth its time, before any is meshed.
 bool SolidStarts::is_worth_comparing() const {
   if (next_ == 0) return true;
+  if (next_ == source_.preferred() && !sectors_.empty()) return false;
   const std::size_t one_more = effort_ / static_cast<std::size_t>(next_);
   return next_ < most_ && sectors_.size() < kMostCompared && effort_ > 0 &&
          effort_ + one_more <= kCompareBudget;

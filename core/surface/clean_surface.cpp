@@ -76,6 +76,10 @@ class Cleaner {
     const Point3 centre = 0.5 * (result_.box.low + result_.box.high);
     result_.area = surface_area(surface());
     result_.volume = enclosed_volume(surface(), centre);
+    if (!result_.problem && !(std::abs(result_.volume) > 0)) {
+      return fail(ErrorCode::kDegenerateGeometry,
+                  "the surface encloses no volume; check for parts that cancel each other");
+    }
     return std::move(result_);
   }
 
@@ -120,6 +124,11 @@ class Cleaner {
   Result<void> close() {
     const std::size_t doubled = drop_doubled_triangles(surface());
     if (doubled > 0) result_.repairs.push_back(plural(doubled, "doubled triangle") + " removed");
+    if (surface().triangles.empty()) {
+      return fail(ErrorCode::kDegenerateGeometry,
+                  "every triangle of the surface occurs from both sides: sheets enclose no volume; "
+                  "give each face once, seen from outside");
+    }
     std::vector<OpenEdge> open = open_edges(surface());
     if (open.empty()) return {};
     for (const double tolerance : kWeldTolerances) {

@@ -32,6 +32,8 @@ class SectorSource {
 
   // The number of different sectors that may be asked for, >= 1.
   [[nodiscard]] virtual std::int32_t candidates() const = 0;
+  // The first so many may be chosen from; the others are for those models that all of them fail on.
+  [[nodiscard]] virtual std::int32_t preferred() const { return candidates(); }
   // Triangles that are worked on for one candidate. 0: candidates differ in nothing but the cut.
   [[nodiscard]] virtual std::size_t effort() const { return 0; }
   // Candidate `index` in [0, candidates()), the most promising first.  Errors: kInternal or a model

@@ -35,6 +35,8 @@ constexpr std::array<Way, 7> kWays = {{{0.3, 1, 12},
                                        {0, 0.25, 4},
                                        {0.3, 0.06, 5},
                                        {0, 0.06, 4}}};
+// Where nothing is cut; walls thinner than the tolerance need less of it.
+constexpr std::array<double, 3> kWholeShares = {1, 0.06, 0.004};
 // Cuts whose curves differ by more than so many tolerances do not match: of use are tolerances of
 // half the symmetry error and above.
 constexpr double kMatchTolerances = 2;
@@ -93,13 +95,18 @@ IndexedSurface restored_sector(const QuotientSurface& s) {
   return flat;
 }
 
-// Corners and middles of the triangles, near ones after each other.
+// Corners and middles of the triangles and their sides, near ones after each other.
 std::vector<Point3> samples_of(const IndexedSurface& surface) {
   std::vector<Point3> samples = surface.points;
-  samples.reserve(samples.size() + surface.triangles.size());
+  samples.reserve(samples.size() + 5 * surface.triangles.size() / 2);
   for (const Triangle& t : surface.triangles) {
-    samples.push_back((1.0 / 3) *
-                      (surface.points[t[0]] + surface.points[t[1]] + surface.points[t[2]]));
+    const std::array<Point3, 3> p = {surface.points[t[0]], surface.points[t[1]],
+                                     surface.points[t[2]]};
+    samples.push_back((1.0 / 3) * (p[0] + p[1] + p[2]));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3;
+      if (t[i] < t[j]) samples.push_back(0.5 * (p[i] + p[j]));  // from one of two triangles
+    }
   }
   sort_along_hilbert_curve(samples);
   return samples;
@@ -203,7 +210,8 @@ SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean,
 // its own; the same angles with each way of snapping.
 void SurfaceSectorSource::choose_candidates() {
   if (symmetry_.fold == 1) {
-    candidates_.push_back({0, 0, tolerance_});
+    for (const double share : kWholeShares) candidates_.push_back({0, 0, share * tolerance_});
+    preferred_ = 1;
     return;
   }
   const double sector = 2 * std::numbers::pi / symmetry_.fold;
@@ -237,6 +245,7 @@ void SurfaceSectorSource::choose_candidates() {
       const auto copy = static_cast<std::int32_t>(random.next() % symmetry_.fold);
       candidates_.push_back(
           {gaps[which].middle + copy * sector, way.snap_share * tolerance, tolerance});
+      preferred_ += way.tolerance_share == 1 ? 1 : 0;
     }
   }
 }

@@ -36,6 +36,7 @@ class SurfaceSectorSource final : public SectorSource {
   [[nodiscard]] std::int32_t candidates() const override {
     return static_cast<std::int32_t>(candidates_.size());
   }
+  [[nodiscard]] std::int32_t preferred() const override { return preferred_; }
   [[nodiscard]] std::size_t effort() const override {
     return full_.triangles.size() / static_cast<std::size_t>(symmetry_.fold) + 1;
   }
@@ -69,6 +70,7 @@ class SurfaceSectorSource final : public SectorSource {
   TriangleTree tree_;            // of full_
   std::vector<Point3> samples_;  // of full_
   std::vector<Candidate> candidates_;
+  std::int32_t preferred_ = 0;  // of them: with the whole tolerance
 };
 
 }  // namespace symcell

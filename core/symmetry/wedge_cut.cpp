@@ -32,6 +32,9 @@ double worse_shape(Point3 a, Point3 b, Point3 c, Point3 d) {
   return std::min(shape(a, b, c), shape(a, c, d));
 }
 
+// No vertex is moved by more than this share of the sector's width there.
+constexpr double kSnapArc = 0.1;
+
 class Cutter {
  public:
   Cutter(const IndexedSurface& surface, std::int32_t fold, double start_angle, double snap)
@@ -102,15 +105,21 @@ class Cutter {
     patch_.on_upper[v] = 1;
   }
 
+  // Less near the axis, where the sector is narrow.
+  [[nodiscard]] double snap_at(Point3 p) const {
+    const double arc = 2 * std::numbers::pi / fold_ * std::hypot(p.x, p.y);
+    return std::min(snap_, kSnapArc * arc);
+  }
+
   void snap_vertices() {
     for (std::size_t i = 0; i < patch_.points.size(); ++i) {
       const auto v = static_cast<std::int32_t>(i);
       const Point3 p = point(v);
       if (std::hypot(p.x, p.y) <= axis_snap_) {
         put_on_axis(v);
-      } else if (std::abs(lower_.height(p)) <= snap_ && (fold_ == 2 || lower_.radius(p) > 0)) {
+      } else if (std::abs(lower_.height(p)) <= snap_at(p) && (fold_ == 2 || lower_.radius(p) > 0)) {
         put_on_lower(v);
-      } else if (std::abs(upper_.height(p)) <= snap_ && upper_.radius(p) > 0) {
+      } else if (std::abs(upper_.height(p)) <= snap_at(p) && upper_.radius(p) > 0) {
         put_on_upper(v);
       }
     }

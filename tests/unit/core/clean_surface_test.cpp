@@ -121,6 +121,16 @@ TEST(CleanSurface, JoinsVerticesInsideEdges) {
   }
 }
 
+TEST(CleanSurface, SheetsEncloseNothing) {
+  ExecutionContext context;
+  TriangleSurface sheets = unit_box(), inside_out = unit_box();
+  turn_inside_out(inside_out);
+  append(sheets, inside_out);
+  const auto clean = clean_surface(sheets, context);
+  ASSERT_FALSE(clean);
+  EXPECT_EQ(clean.error().code, ErrorCode::kDegenerateGeometry);
+}
+
 TEST(CleanSurface, NestsShells) {
   ExecutionContext context;
   TriangleSurface surface = unit_box();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,11 +49,17 @@ class ListedSectors final : public SectorSource {
     return sector;
   }
 
+  [[nodiscard]] std::int32_t preferred() const override {
+    return preferred_.value_or(candidates());
+  }
+  void prefer(std::int32_t count) { preferred_ = count; }
+
   mutable std::vector<std::int32_t> asked;
 
  private:
   std::vector<Entry> entries_;
   std::size_t effort_;
+  std::optional<std::int32_t> preferred_;
   SolidSymmetry symmetry_;
   std::vector<std::string> repairs_;
 };
@@ -129,6 +136,21 @@ TEST(SolidStarts, TheEarlierOfMuchTheSameComesFirst) {
     const auto solid = starts.next(context);
     ASSERT_TRUE(solid) << solid.error().message;
     EXPECT_EQ(origin(*solid), expected);
+  }
+}
+
+TEST(SolidStarts, OthersAreForWhereThePreferredFail) {
+  for (const bool fails : {false, true}) {
+    ListedSectors::Entry first{30, 4}, second{20, 4}, other{10, 4};
+    first.cut = second.cut = !fails;
+    ListedSectors source({first, second, other}, 100);
+    source.prefer(2);
+    SolidStarts starts(source);
+    ExecutionContext context;
+    const auto solid = starts.next(context);
+    ASSERT_TRUE(solid) << solid.error().message;
+    EXPECT_EQ(origin(*solid), fails ? 2 : 1);
+    EXPECT_EQ(source.asked.size(), fails ? 3U : 2U);
   }
 }
 
