@@ -20,21 +20,28 @@
 namespace symcell {
 namespace {
 
+// A sector's volume times n against the input's: of the volume, or, where nothing comes so near, of
+// a shell as thick as the symmetry error, by which sectors may differ.
+constexpr double kVolumeRel = 1e-3;
+constexpr double kShellShare = 0.5;
 // Vertices nearer to a cut than a share of the tolerance are moved onto it. The first way is what
 // worked best on real files; the others are for those it fails on. Wide tolerances move more than
 // narrow sectors and small features bear: then less of them is used.
 struct Way {
   double snap_share;
   double tolerance_share;
+  double shell_share;
   std::int32_t cuts;
 };
-constexpr std::array<Way, 7> kWays = {{{0.3, 1, 12},
-                                       {1, 1, 4},
-                                       {0, 1, 6},
-                                       {0.3, 0.25, 5},
-                                       {0, 0.25, 4},
-                                       {0.3, 0.06, 5},
-                                       {0, 0.06, 4}}};
+constexpr std::array<Way, 9> kWays = {{{0.3, 1, 0, 12},
+                                       {1, 1, 0, 4},
+                                       {0, 1, 0, 6},
+                                       {0.3, 1, kShellShare, 4},
+                                       {0, 1, kShellShare, 3},
+                                       {0.3, 0.25, kShellShare, 4},
+                                       {0, 0.25, kShellShare, 2},
+                                       {0.3, 0.06, kShellShare, 3},
+                                       {0, 0.06, kShellShare, 2}}};
 // Where nothing is cut; walls thinner than the tolerance need less of it.
 constexpr std::array<double, 3> kWholeShares = {1, 0.06, 0.004};
 // Cuts whose curves differ by more than so many tolerances do not match: of use are tolerances of
@@ -71,10 +78,6 @@ constexpr double kNarrowFactor = 1.5;
 constexpr double kSquareRound = 2;
 // Of its longest side: no triangle counts as flatter.
 constexpr double kLeastHeight = 1e-4;
-// A sector's volume times n against the input's: of the volume, or of the shell as thick as the
-// tolerance that the surface may lie in.
-constexpr double kVolumeRel = 1e-3;
-constexpr double kShellShare = 0.5;
 
 IndexedSurface restored_sector(const QuotientSurface& s) {
   const RotationTable rotations(s.fold);
@@ -210,7 +213,7 @@ SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean,
 // its own; the same angles with each way of snapping.
 void SurfaceSectorSource::choose_candidates() {
   if (symmetry_.fold == 1) {
-    for (const double share : kWholeShares) candidates_.push_back({0, 0, share * tolerance_});
+    for (const double share : kWholeShares) candidates_.push_back({0, 0, share * tolerance_, 0});
     preferred_ = 1;
     return;
   }
@@ -243,9 +246,9 @@ void SurfaceSectorSource::choose_candidates() {
     for (std::int32_t i = 0; i < way.cuts; ++i) {
       const auto which = std::min(static_cast<std::size_t>(i), gaps.size() - 1);
       const auto copy = static_cast<std::int32_t>(random.next() % symmetry_.fold);
-      candidates_.push_back(
-          {gaps[which].middle + copy * sector, way.snap_share * tolerance, tolerance});
-      preferred_ += way.tolerance_share == 1 ? 1 : 0;
+      candidates_.push_back({gaps[which].middle + copy * sector, way.snap_share * tolerance,
+                             tolerance, way.shell_share});
+      preferred_ += way.shell_share == 0 ? 1 : 0;
     }
   }
 }
@@ -254,7 +257,7 @@ void SurfaceSectorSource::choose_candidates() {
 // symmetry error has used up from place to place: a result that is no longer the input's shape is
 // none.
 Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
-                                                 double tolerance,
+                                                 const Candidate& candidate,
                                                  const FlatnessTolerances& flatness,
                                                  ExecutionContext& context) const {
   const QuotientSurface given = surface;
@@ -264,17 +267,18 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
   std::size_t made = 0;
   for (const double share : kImproveShares) {
     QuotientSurface improved = given;
-    if (auto done = improve_surface(improved, share * tolerance, flatness, context); !done) {
+    if (auto done = improve_surface(improved, share * candidate.tolerance, flatness, context);
+        !done) {
       return tl::unexpected<Error>(done.error());
     }
     const SectorShape shape = shape_of(improved);
     ++taken;
     made += improved.triangles.size();
     if (!best || shape.better_than(*best)) {
-      if (auto same = check_shape(improved, context); !same) {
+      if (auto same = check_shape(improved, candidate.shell_share, context); !same) {
         if (auto state = context.check(); !state) return tl::unexpected<Error>(state.error());
         // A cut that is off before anything is improved is off at every share.
-        if (last.message.empty() && !check_shape(given, context)) {
+        if (last.message.empty() && !check_shape(given, candidate.shell_share, context)) {
           return tl::unexpected(same.error());
         }
         last = same.error();
@@ -293,9 +297,11 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
 }
 
 Result<void> SurfaceSectorSource::check_shape(const QuotientSurface& surface,
+                                              double shell_share,
                                               ExecutionContext& context) const {
   const double volume = full_volume(surface);
-  const double most = std::max(kVolumeRel * std::abs(volume_), kShellShare * tolerance_ * area_);
+  const double error = symmetry_.error_rel * symmetry_.diameter;
+  const double most = std::max(kVolumeRel * std::abs(volume_), shell_share * error * area_);
   if (!(std::abs(volume - volume_) <= most)) {
     return fail(ErrorCode::kInternal, "the sector's volume is wrong: " + describe_rounded(volume) +
                                           " for " + describe_rounded(volume_));
@@ -362,7 +368,7 @@ Result<SolidSector> SurfaceSectorSource::sector(std::int32_t index,
   if (auto flat = flatten_planar_patches(quotient, flatness, context); !flat) {
     return tl::unexpected<Error>(flat.error());
   }
-  const auto shape = improve(quotient, candidate.tolerance, flatness, context);
+  const auto shape = improve(quotient, candidate, flatness, context);
   if (!shape) return tl::unexpected<Error>(shape.error());
   auto sector = quotient_to_sector(quotient);
   if (sector) {

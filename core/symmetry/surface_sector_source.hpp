@@ -49,13 +49,17 @@ class SurfaceSectorSource final : public SectorSource {
     // Lengths.
     double snap;
     double tolerance;
+    double shell_share;  // see check_shape
   };
   void choose_candidates();
   [[nodiscard]] Result<SectorShape> improve(QuotientSurface& surface,
-                                            double tolerance,
+                                            const Candidate& candidate,
                                             const FlatnessTolerances& flatness,
                                             ExecutionContext& context) const;
+  // Of the input's volume, or off by that share of a shell as thick as the symmetry error at most;
+  // near the input everywhere; without crossings.
   [[nodiscard]] Result<void> check_shape(const QuotientSurface& surface,
+                                         double shell_share,
                                          ExecutionContext& context) const;
   [[nodiscard]] Result<void> check_distances(const IndexedSurface& sector,
                                              ExecutionContext& context) const;
