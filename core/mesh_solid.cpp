@@ -1,5 +1,6 @@
 #include "core/mesh_solid.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <optional>
@@ -33,6 +34,7 @@ constexpr std::size_t kStartBudget = 4'000;
 constexpr double kSizedShare = 2.5;
 // More bad tetrahedra than this share come of the input, whatever the cut.
 constexpr double kHopelessShare = 0.01;
+constexpr double kFewBad = 20;  // but so few may come of the cut
 // A mesh with a dihedral angle of a sine below this counts as larger by a factor.
 constexpr double kPoorSine = 0.26;         // 15 degrees
 constexpr double kPoorExemptSine = 0.087;  // 5 degrees: the input may have few more
@@ -65,7 +67,7 @@ bool is_worth_another_start(const RefinedSolid& mesh,
                             const MeshOptions& options) {
   if (options.plain || starts >= (mesh.guarded > 0 ? kMostStartsIfBad : kMostStarts)) return false;
   const auto count = static_cast<double>(mesh.count());
-  if (static_cast<double>(mesh.guarded) > kHopelessShare * count) return false;
+  if (static_cast<double>(mesh.guarded) > std::max(kFewBad, kHopelessShare * count)) return false;
   const bool sized = count <= kSizedShare * mesh.least_count;
   const bool poor = !options.delaunay && (sized ? mesh.least_sine < kSizedPoorSine : is_poor(mesh));
   if (mesh.guarded > 0 || poor) {
