@@ -8,10 +8,12 @@ target_sources(symcell_core PRIVATE
   surface/indexed_surface.cpp
   surface/mass_properties.cpp
   surface/mend_surface.cpp
+  surface/narrow_corners.cpp
   surface/planar_patches.cpp
   surface/quotient_surface.cpp
   surface/self_intersections.cpp
   surface/shells.cpp
+  surface/surface_edits.cpp
   surface/t_junctions.cpp
   surface/triangle_tree.cpp
   surface/weld.cpp
