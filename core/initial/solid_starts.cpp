@@ -14,7 +14,7 @@ constexpr std::size_t kCompareBudget = 150'000;
 constexpr std::size_t kMostCompared = 8;
 // After so many triangles a sector without narrow corners is good enough, and at once where two in
 // a row cost the same up to this factor.
-constexpr std::size_t kEnoughCompared = 10'000;
+constexpr std::size_t kEnoughCompared = 7'000;
 constexpr double kAlike = 1.001;
 // What a sector costs more than the one before, for the same triangles.
 constexpr double kLaterCost = 0.05;
