@@ -112,7 +112,8 @@ class SolidResultsTest(unittest.TestCase):
         self.assertIn(answer.json()["code"], ("truncated", "count_mismatch"))
 
     def test_events_tell_phases_and_elements(self):
-        job = self.server.submit(json.loads(HEXNUT.read_text()), {"max_volume": 0.005})
+        # Large enough that its refinement lasts longer than the 250 ms between two events.
+        job = self.server.submit(json.loads(HEXNUT.read_text()), {"max_volume": 0.001})
         blocks = self.server.get(f"/v1/jobs/{job['id']}/events").text().split("\n\n")
         events = [dict(line.split(": ", 1) for line in block.splitlines() if ": " in line)
                   for block in blocks if block.startswith("event: ")]
