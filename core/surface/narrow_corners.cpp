@@ -10,9 +10,7 @@
 namespace symcell {
 namespace {
 
-// In a corner narrower than this (as for the default bound on the ratio, asin(1 / 2B)) no good
-// tetrahedron fits: where such are left, the surface may deviate more by this factor.
-constexpr double kNarrowCorner = 20.71 * std::numbers::pi / 180;
+// Where narrow corners are left, the surface may deviate more by this factor.
 constexpr double kNarrowRelief = 2;
 // But may not get flatter triangles than this for it.
 constexpr double kOpenedShape = 0.2;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,10 @@
 #include "core/surface/editable_surface.hpp"
 
 namespace symcell {
+
+// In a corner below asin(1 / 2B) every subfacet has a circumradius above B times its shortest side,
+// and so has the tetrahedron on it; B is the default bound. Radians.
+inline constexpr double kNarrowCorner = 20.71 * std::numbers::pi / 180;
 
 class NarrowCorners {
  public:

@@ -367,12 +367,11 @@ class Detector {
   // A turn of a fold that does not fit, 0: all do. Turns far from each other first: small ones move
   // nothing far.
   [[nodiscard]] std::int32_t misfitting_turn(const SymmetryAxis& axis, std::int32_t n) const {
-    for (std::int32_t stride = n / 2; stride > 0; stride /= 2) {
-      for (std::int32_t k = stride; k < n; k += 2 * stride) {
-        if (!shape_.fits(axis, 2 * std::numbers::pi * k / n, tolerance_)) return k;
-      }
-    }
-    for (std::int32_t k = 1; k < n; ++k) {
+    std::int32_t step = std::max(1, static_cast<std::int32_t>(kOddAngles.front() * n));
+    while (std::gcd(step, n) != 1) ++step;
+    std::int32_t k = 0;
+    for (std::int32_t i = 1; i < n; ++i) {
+      k = (k + step) % n;
       if (!shape_.fits(axis, 2 * std::numbers::pi * k / n, tolerance_)) return k;
     }
     return 0;

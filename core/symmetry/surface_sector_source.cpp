@@ -11,6 +11,7 @@
 #include "core/geometry/spatial_order.hpp"
 #include "core/model/describe.hpp"
 #include "core/surface/improve_surface.hpp"
+#include "core/surface/narrow_corners.hpp"
 #include "core/surface/planar_patches.hpp"
 #include "core/surface/self_intersections.hpp"
 #include "core/symmetry/glue_cuts.hpp"
@@ -66,11 +67,8 @@ constexpr std::size_t kManyTimes = 4;
 // So many triangles of curved parts may be thin: height below a fifth of the longest side.
 constexpr double kThinShape = 0.2;
 constexpr double kThinShare = 0.002;
-// In a corner below asin(1 / 2B) every subfacet has a circumradius above B times its shortest side,
-// and so has the tetrahedron on it; B is the default bound.
-constexpr double kNarrowCorner = 20.71 * std::numbers::pi / 180;
-// Each counts as so many elements, and any of them as so much more of all: a mesh without bad
-// tetrahedra is worth some more good ones.
+// Each narrow corner counts as so many elements, and any of them as so much more of all: a mesh
+// without bad tetrahedra is worth some more good ones.
 constexpr double kNarrowCost = 400;
 constexpr double kNarrowFactor = 1.5;
 // Boundary squared over area is 16 for a square and 4 times length over width for a strip, which
