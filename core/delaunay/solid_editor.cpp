@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 #include "core/base/assert.hpp"
 
@@ -25,6 +27,15 @@ bool is_flat(Point3 p, Point3 a, Point3 b, Point3 c, double relative) {
       std::max({squared_distance(p, a), squared_distance(p, b), squared_distance(p, c),
                 squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)});
   return six_volumes(p, a, b, c) <= relative * l2 * std::sqrt(l2);
+}
+
+// Whether p and `inner` are on one side of the line through a and b; all four lie in one plane but
+// for rounding. As with volumes, what is nearly on the line is not.
+bool is_seen(Point3 p, Point3 a, Point3 b, Point3 inner) {
+  const Point3 d = b - a, q = p - a;
+  const Point3 normal = cross(d, inner - a);
+  const double reach2 = std::max(dot(d, d), dot(q, q));
+  return dot(cross(d, q), normal) > kMinRelativeVolume * reach2 * length(normal);
 }
 
 }  // namespace
@@ -62,10 +73,10 @@ void SolidEditor::compact() {
 
 bool SolidEditor::replace(std::span<const TetCopy> removed,
                           std::span<const NewTet> added,
-                          QuotientTetrahedralization::Outline outline) {
+                          std::span<const EdgeKey> segment_edges) {
   bool crosses = false;
   for (const TetCopy& c : removed) crosses = crosses || c.e != removed.front().e;
-  if (!mesh_.replace(removed, added, outline)) return false;
+  if (!mesh_.replace(removed, added, segment_edges)) return false;
   if (measures_.size() < mesh_.tet_slots())
     measures_.resize(mesh_.tet_slots() + mesh_.tet_slots() / 2);
   for (const TetId t : mesh_.added_ids()) measures_[t] = measure(t);
@@ -119,8 +130,8 @@ SolidEditor::Walk SolidEditor::walk(TetCopy from, Point3 p) const {
   return w;
 }
 
-CavityFace SolidEditor::face_of_copy(TetCopy c, std::uint32_t i) const {
-  CavityFace f;
+SolidCavityFace SolidEditor::face_of_copy(TetCopy c, std::uint32_t i) const {
+  SolidCavityFace f;
   for (std::size_t j = 0; j < 3; ++j) {
     f.corners[j] = mesh_.corner(c, kFaceCorners[i][j]);
     f.points[j] = mesh_.lift(f.corners[j]);
@@ -130,13 +141,13 @@ CavityFace SolidEditor::face_of_copy(TetCopy c, std::uint32_t i) const {
   return f;
 }
 
-bool SolidEditor::contains(const Cavity& cavity, TetCopy c) const {
+bool SolidEditor::contains(const SolidCavity& cavity, TetCopy c) const {
   const Tet& t = mesh_.tet(c.t);
   if (t.stamp != epoch_ || t.scratch < 0) return false;
   return point_on_axis_ || cavity.tets[static_cast<std::size_t>(t.scratch)].e == c.e;
 }
 
-void SolidEditor::seed_cavity(Cavity& cavity) const {
+void SolidEditor::seed_cavity(SolidCavity& cavity) const {
   cavity.tets.clear();
   const SolidLocation& w = cavity.where;
   switch (w.kind) {
@@ -154,7 +165,7 @@ void SolidEditor::seed_cavity(Cavity& cavity) const {
   cavity.seeds = cavity.tets.size();
 }
 
-void SolidEditor::find_own_facets(const Cavity& cavity) {
+void SolidEditor::find_own_facets(const SolidCavity& cavity) {
   own_facets_.clear();
   const SolidLocation& w = cavity.where;
   if (w.kind == SolidLocation::Kind::kInside) return;
@@ -173,7 +184,7 @@ void SolidEditor::find_own_facets(const Cavity& cavity) {
 }
 
 // Whether the face lies in a facet that the point lies on, at the point's own copy of it.
-bool SolidEditor::in_own_plane(const Cavity& cavity, const CavityFace& face) const {
+bool SolidEditor::in_own_plane(const SolidCavity& cavity, const SolidCavityFace& face) const {
   if (std::find(own_facets_.begin(), own_facets_.end(), face.facet) == own_facets_.end()) {
     return false;
   }
@@ -185,7 +196,7 @@ bool SolidEditor::in_own_plane(const Cavity& cavity, const CavityFace& face) con
   return height * height <= kCoplanarRelativeHeight * kCoplanarRelativeHeight * reach2 * dot(n, n);
 }
 
-void SolidEditor::grow_cavity(Cavity& cavity) {
+void SolidEditor::grow_cavity(SolidCavity& cavity) {
   epoch_ = mesh_.new_epoch();
   for (std::size_t i = 0; i < cavity.tets.size(); ++i) {
     Tet& t = mesh_.tet(cavity.tets[i].t);
@@ -210,7 +221,7 @@ void SolidEditor::grow_cavity(Cavity& cavity) {
   }
 }
 
-std::int64_t SolidEditor::gather_boundary(Cavity& cavity) {
+std::int64_t SolidEditor::gather_boundary(SolidCavity& cavity) {
   cavity.faces.clear();
   cavity.outline.clear();
   hidden_.clear();
@@ -221,7 +232,7 @@ std::int64_t SolidEditor::gather_boundary(Cavity& cavity) {
       const bool hull = t.nb[i] == kNoHalfFace;
       const bool inside = !hull && contains(cavity, mesh_.neighbour(c, i));
       if (inside && t.facet[i] == kNoFacet) continue;
-      CavityFace face = face_of_copy(c, i);
+      SolidCavityFace face = face_of_copy(c, i);
       face.owner = static_cast<std::uint32_t>(at);
       if (t.facet[i] != kNoFacet && in_own_plane(cavity, face)) {
         // Divided anew; needs both sides where there are two.
@@ -233,7 +244,8 @@ std::int64_t SolidEditor::gather_boundary(Cavity& cavity) {
           if (other < at || (other == at && face_of(t.nb[i]) < i)) continue;
         }
         for (std::size_t j = 0; j < 3; ++j) {
-          cavity.outline.push_back({face.corners[j], face.corners[(j + 1) % 3], face.facet});
+          cavity.outline.push_back({face.corners[j], face.corners[(j + 1) % 3], face.facet,
+                                    face.owner, face.points[(j + 2) % 3]});
         }
         continue;
       }
@@ -251,15 +263,57 @@ std::int64_t SolidEditor::gather_boundary(Cavity& cavity) {
       cavity.faces.push_back(face);
     }
   }
+  const std::int64_t unseen = reduce_outline(cavity);
+  if (unseen != kFits) return unseen;
   return hidden_.empty() ? kFits : static_cast<std::int64_t>(hidden_.front());
+}
+
+// Copies of an edge round a point on the axis are one: the point is in all of their frames.
+EdgeKey SolidEditor::outline_name(Corner a, Corner b) const {
+  if (point_on_axis_) return mesh_.edge_key(a, b);
+  const bool ordered = a.v < b.v || (a.v == b.v && a.k < b.k);
+  return ordered ? EdgeKey{a.v, b.v, a.k * mesh_.fold() + b.k}
+                 : EdgeKey{b.v, a.v, b.k * mesh_.fold() + a.k};
+}
+
+// Edges between two of the subfacets go; those of the outline must be seen from the point's side,
+// as the subfacet beside it sees them. Else a new subfacet would be laid across a gap, or outside.
+// Subsegments bound, even between two subfacets; the edge that the point splits is bound to go.
+std::int64_t SolidEditor::reduce_outline(SolidCavity& cavity) {
+  auto& outline = cavity.outline;
+  if (outline.empty()) return kFits;
+  const auto name = [&](const SolidOutlineEdge& e) {
+    const EdgeKey key = outline_name(e.a, e.b);
+    return std::tuple(e.facet, key.a, key.b, key.exponent);
+  };
+  std::stable_sort(
+      outline.begin(), outline.end(),
+      [&](const SolidOutlineEdge& x, const SolidOutlineEdge& y) { return name(x) < name(y); });
+  const auto& split = cavity.where.edge;
+  const bool splits = cavity.where.kind == SolidLocation::Kind::kOnEdge;
+  const EdgeKey goes = splits ? outline_name(split[0], split[1]) : EdgeKey{};
+  std::size_t kept = 0;
+  for (std::size_t i = 0, next = 0; i < outline.size(); i = next) {
+    while (next < outline.size() && name(outline[next]) == name(outline[i])) ++next;
+    if (splits && outline_name(outline[i].a, outline[i].b) == goes) continue;
+    const bool bounds = next - i == 1 || mesh_.segment_of(outline[i].a, outline[i].b) != kNoSegment;
+    for (std::size_t j = i; bounds && j < next; ++j) outline[kept++] = outline[j];
+  }
+  outline.resize(kept);
+  for (const SolidOutlineEdge& e : outline) {
+    if (is_seen(cavity.point, mesh_.lift(e.a), mesh_.lift(e.b), e.inner)) continue;
+    if (e.owner < cavity.seeds) return e.owner;
+    hidden_.push_back(e.owner);
+  }
+  return kFits;
 }
 
 // A vertex or subsegment of the cavity that its boundary lacks would vanish: names a tetrahedron
 // that has it.
-std::int64_t SolidEditor::find_lost(Cavity& cavity) {
+std::int64_t SolidEditor::find_lost(SolidCavity& cavity) {
   marks_.resize(mesh_.vertex_slots());
   const std::uint32_t mark = ++mark_epoch_;
-  for (const CavityFace& f : cavity.faces) {
+  for (const SolidCavityFace& f : cavity.faces) {
     for (const Corner& x : f.corners) marks_[static_cast<std::size_t>(x.v)] = {mark, x.k};
   }
   const auto on_boundary = [&](Corner x) {
@@ -267,13 +321,13 @@ std::int64_t SolidEditor::find_lost(Cavity& cavity) {
     if (m.epoch != mark) return false;
     if (m.k == x.k) return true;
     // The last copy to be marked hides the others.
-    for (const CavityFace& f : cavity.faces) {
+    for (const SolidCavityFace& f : cavity.faces) {
       if (f.corners[0] == x || f.corners[1] == x || f.corners[2] == x) return true;
     }
     return false;
   };
   const auto has_edge = [&](Corner x, Corner y) {
-    for (const CavityFace& f : cavity.faces) {
+    for (const SolidCavityFace& f : cavity.faces) {
       const auto has = [&](Corner z) {
         return f.corners[0] == z || f.corners[1] == z || f.corners[2] == z;
       };
@@ -309,7 +363,7 @@ std::int64_t SolidEditor::find_lost(Cavity& cavity) {
   return kFits;
 }
 
-void SolidEditor::drop(Cavity& cavity, std::span<const std::size_t> indices) {
+void SolidEditor::drop(SolidCavity& cavity, std::span<const std::size_t> indices) {
   // Those that are no longer connected to the seeds go with them.
   for (const std::size_t i : indices) mesh_.tet(cavity.tets[i].t).scratch = -1;
   keep_.assign(cavity.tets.size(), 0);
@@ -345,7 +399,7 @@ void SolidEditor::drop(Cavity& cavity, std::span<const std::size_t> indices) {
 }
 
 // A point on a face of a seed needs the tetrahedron on the other side as well.
-bool SolidEditor::add_seed(Cavity& cavity, std::size_t index) {
+bool SolidEditor::add_seed(SolidCavity& cavity, std::size_t index) {
   const TetCopy c = cavity.tets[index];
   if (flat_face_ == 4 || cavity.seeds >= kMaxSeeds) return false;
   const Tet& t = mesh_.tet(c.t);
@@ -362,7 +416,7 @@ bool SolidEditor::add_seed(Cavity& cavity, std::size_t index) {
 
 bool SolidEditor::find_cavity(Point3 p,
                               const SolidLocation& where,
-                              Cavity& cavity,
+                              SolidCavity& cavity,
                               std::size_t most_dropped) {
   cavity.point = p;
   cavity.where = where;
@@ -395,38 +449,29 @@ bool SolidEditor::find_cavity(Point3 p,
     drop(cavity, hidden_);
   }
   double nearest2 = std::numeric_limits<double>::infinity();
-  for (const CavityFace& f : cavity.faces) {
+  for (const SolidCavityFace& f : cavity.faces) {
     for (const Point3& x : f.points) nearest2 = std::min(nearest2, squared_distance(x, p));
   }
   cavity.nearest2 = nearest2;
   return true;
 }
 
-VertexId SolidEditor::insert(const Cavity& cavity,
+VertexId SolidEditor::insert(const SolidCavity& cavity,
                              SolidVertexKind kind,
                              std::int32_t parent,
                              bool on_axis) {
   const VertexId p = mesh_.add_vertex(cavity.point, kind, on_axis, parent);
   const bool split = cavity.where.kind == SolidLocation::Kind::kOnEdge;
   const auto& edge = cavity.where.edge;
-  // The outline of the subfacets to be divided: their edges that occur once, without the one split.
-  const auto same_edge = [](const CavityEdge& e, Corner a, Corner b) {
-    return (e.a == a && e.b == b) || (e.a == b && e.b == a);
-  };
   const auto facet_at = [&](Corner a, Corner b) {
-    std::int32_t found = kNoFacet;
-    int times = 0;
-    for (const CavityEdge& e : cavity.outline) {
-      if (!same_edge(e, a, b)) continue;
-      ++times;
-      found = e.facet;
+    const EdgeKey name = outline_name(a, b);
+    for (const SolidOutlineEdge& e : cavity.outline) {
+      if (outline_name(e.a, e.b) == name) return e.facet;
     }
-    if (times != 1) return kNoFacet;
-    if (split && same_edge({edge[0], edge[1], 0}, a, b)) return kNoFacet;
-    return found;
+    return kNoFacet;
   };
   new_tets_.clear();
-  for (const CavityFace& f : cavity.faces) {
+  for (const SolidCavityFace& f : cavity.faces) {
     NewTet t;
     t.c[0] = {p, 0};
     for (std::size_t j = 0; j < 3; ++j) t.c[j + 1] = f.corners[j];
@@ -440,17 +485,21 @@ VertexId SolidEditor::insert(const Cavity& cavity,
     }
     new_tets_.push_back(t);
   }
-  if (!replace(cavity.tets, new_tets_,
-               split ? QuotientTetrahedralization::Outline::kChanged
-                     : QuotientTetrahedralization::Outline::kKept)) {
+  const std::int32_t segment = split ? mesh_.segment_of(edge[0], edge[1]) : kNoSegment;
+  std::array<EdgeKey, 3> halves;
+  if (segment != kNoSegment) {
+    halves = {mesh_.edge_key(edge[0], edge[1]), mesh_.edge_key(edge[0], {p, 0}),
+              mesh_.edge_key({p, 0}, edge[1])};
+  }
+  const std::size_t changed = segment != kNoSegment ? halves.size() : 0;
+  if (!replace(cavity.tets, new_tets_, {halves.data(), changed})) {
     mesh_.release_vertex(p);
     return kNoVertex;
   }
-  const std::int32_t segment = split ? mesh_.segment_of(edge[0], edge[1]) : kNoSegment;
   if (segment != kNoSegment) {
-    mesh_.set_segment(mesh_.edge_key(edge[0], edge[1]), kNoSegment);
-    mesh_.set_segment(mesh_.edge_key(edge[0], {p, 0}), segment);
-    mesh_.set_segment(mesh_.edge_key({p, 0}, edge[1]), segment);
+    mesh_.set_segment(halves[0], kNoSegment);
+    mesh_.set_segment(halves[1], segment);
+    mesh_.set_segment(halves[2], segment);
   }
   ++counters_.insertions;
   return p;

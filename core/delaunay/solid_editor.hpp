@@ -4,8 +4,9 @@
 // Insertion is constrained Bowyer-Watson in the universal cover: the cavity of a point grows from
 // the tetrahedra that contain it over faces that are no subfacets (and across the subfacets of the
 // point's own facet), each tetrahedron of the quotient at one exponent only; it shrinks again until
-// the point sees all of its boundary and no vertex or subsegment is lost. The smallest cavity, the
-// tetrahedra that contain the point, always does. Source: [paper] sec. 5; [Si15] sec. 4.
+// the point sees all of its boundary, and of the subfacets to be divided all of their outline, and
+// no vertex or subsegment is lost. The smallest cavity, the tetrahedra that contain the point,
+// always does. Source: [paper] sec. 5; [Si15] sec. 4.
 #pragma once
 
 #include <array>
@@ -43,27 +44,33 @@ struct SolidLocation {
 };
 
 // A face of the cavity's boundary, outward, in the frame of the cavity.
-struct CavityFace {
+struct SolidCavityFace {
   std::array<Corner, 3> corners;
   std::array<Point3, 3> points;
   std::int32_t facet = kNoFacet;
   std::int32_t region = 0;
-  std::uint32_t owner = 0;  // index in Cavity::tets
+  std::uint32_t owner = 0;  // index in SolidCavity::tets
 };
 
-struct CavityEdge {
+// An edge of a subfacet that the point divides anew, in the frame of the cavity.
+struct SolidOutlineEdge {
   Corner a, b;
   std::int32_t facet = kNoFacet;
+  std::uint32_t owner = 0;  // index in SolidCavity::tets
+  Point3 inner;             // the subfacet's third corner
 };
 
-struct Cavity {
+struct SolidCavity {
   SolidLocation where;
   Point3 point;
   std::vector<TetCopy> tets;
-  std::vector<CavityFace> faces;
-  std::vector<CavityEdge> outline;  // edges of the subfacets that the point divides anew
-  std::size_t seeds = 0;            // the first ones contain the point
-  double nearest2 = 0;              // squared distance of the point to the nearest vertex
+  std::vector<SolidCavityFace> faces;
+  // Edges that bound the subfacets which the point divides anew. The point sees each of them within
+  // the facet, so that the new subfacets cover what the old ones did: a facet need not be convex,
+  // and the cavity may reach round a gap in it.
+  std::vector<SolidOutlineEdge> outline;
+  std::size_t seeds = 0;  // the first ones contain the point
+  double nearest2 = 0;    // squared distance of the point to the nearest vertex
 };
 
 class SolidEditor {
@@ -89,12 +96,12 @@ class SolidEditor {
   static constexpr std::size_t kManyDropped = 40;
   [[nodiscard]] bool find_cavity(Point3 p,
                                  const SolidLocation& where,
-                                 Cavity& cavity,
+                                 SolidCavity& cavity,
                                  std::size_t most_dropped = kManyDropped);
   // Inserts the cavity's point; kNoVertex if the mesh refuses. New tetrahedra: mesh().added_ids().
   // `parent`: segment or facet of a point on one.
   static constexpr VertexId kNoVertex = -1;
-  [[nodiscard]] VertexId insert(const Cavity& cavity,
+  [[nodiscard]] VertexId insert(const SolidCavity& cavity,
                                 SolidVertexKind kind,
                                 std::int32_t parent,
                                 bool on_axis);
@@ -102,7 +109,7 @@ class SolidEditor {
   // As QuotientTetrahedralization::replace, with the measures kept up to date.
   [[nodiscard]] bool replace(std::span<const TetCopy> removed,
                              std::span<const NewTet> added,
-                             QuotientTetrahedralization::Outline outline);
+                             std::span<const EdgeKey> segment_edges = {});
   // After a vertex moved.
   void remeasure(TetId t) {
     measures_[t] = measure(t);
@@ -132,19 +139,23 @@ class SolidEditor {
  private:
   void remeasure_all();
   [[nodiscard]] bool in_sphere(TetCopy c, Point3 p) const;
-  void seed_cavity(Cavity& cavity) const;
-  void find_own_facets(const Cavity& cavity);
-  void grow_cavity(Cavity& cavity);
+  void seed_cavity(SolidCavity& cavity) const;
+  void find_own_facets(const SolidCavity& cavity);
+  void grow_cavity(SolidCavity& cavity);
   // Fills faces and outline; kFits, or the index of a tetrahedron that must leave, with all of its
   // kind in hidden_.
   static constexpr std::int64_t kFits = -1;
-  [[nodiscard]] std::int64_t gather_boundary(Cavity& cavity);
-  [[nodiscard]] std::int64_t find_lost(Cavity& cavity);
-  void drop(Cavity& cavity, std::span<const std::size_t> indices);
-  [[nodiscard]] bool add_seed(Cavity& cavity, std::size_t index);
-  [[nodiscard]] bool in_own_plane(const Cavity& cavity, const CavityFace& face) const;
-  [[nodiscard]] bool contains(const Cavity& cavity, TetCopy c) const;
-  [[nodiscard]] CavityFace face_of_copy(TetCopy c, std::uint32_t i) const;
+  [[nodiscard]] std::int64_t gather_boundary(SolidCavity& cavity);
+  // Leaves the edges of the outline proper; as gather_boundary for those that the point does not
+  // see.
+  [[nodiscard]] std::int64_t reduce_outline(SolidCavity& cavity);
+  [[nodiscard]] EdgeKey outline_name(Corner a, Corner b) const;
+  [[nodiscard]] std::int64_t find_lost(SolidCavity& cavity);
+  void drop(SolidCavity& cavity, std::span<const std::size_t> indices);
+  [[nodiscard]] bool add_seed(SolidCavity& cavity, std::size_t index);
+  [[nodiscard]] bool in_own_plane(const SolidCavity& cavity, const SolidCavityFace& face) const;
+  [[nodiscard]] bool contains(const SolidCavity& cavity, TetCopy c) const;
+  [[nodiscard]] SolidCavityFace face_of_copy(TetCopy c, std::uint32_t i) const;
 
   QuotientTetrahedralization& mesh_;
   std::vector<TetMeasures> measures_;
@@ -159,7 +170,8 @@ class SolidEditor {
   std::vector<NewTet> new_tets_;
   std::vector<std::uint8_t> keep_;
   std::vector<std::size_t> todo_;
-  std::vector<std::size_t> hidden_;  // tetrahedra with faces that the cavity's point does not see
+  // Tetrahedra with faces, or edges of an outline, that the cavity's point does not see.
+  std::vector<std::size_t> hidden_;
   struct VertexMark {
     std::uint32_t epoch = 0;
     std::int32_t k = 0;

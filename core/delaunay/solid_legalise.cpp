@@ -50,8 +50,6 @@ class Legaliser {
     TetId t;
     std::uint32_t version;
   };
-  using Outline = QuotientTetrahedralization::Outline;
-
   void push(TetId t) { todo_.push_back({t, mesh_.tet(t).version}); }
 
   [[nodiscard]] static bool positive(Point3 a, Point3 b, Point3 c, Point3 d) {
@@ -91,7 +89,7 @@ class Legaliser {
     }
     if (bad == 0) {
       const std::array<TetCopy, 2> removed = {here, there};
-      return editor_.replace(removed, tets_, Outline::kKept);
+      return editor_.replace(removed, tets_);
     }
     return bad == 1 && flip_edge(here, f[reflex], f[(reflex + 1) % 3], d, e);
   }
@@ -145,7 +143,7 @@ class Legaliser {
                6;
     }
     if (std::abs(after - before) > kSameVolume * before) return false;
-    return editor_.replace(ring_, tets_, Outline::kKept);
+    return editor_.replace(ring_, tets_);
   }
 
   static constexpr double kSameVolume = 1e-6;

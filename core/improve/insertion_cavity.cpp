@@ -34,13 +34,13 @@ constexpr std::array<Point3, 14> kWays = {{{1, 0, 0},
 // A tetrahedron that breaks a bound counts as one of so small a share of its shape.
 constexpr double kBrokenShare = 0.5;
 
-bool has(const CavityFace& f, Corner x) {
+bool has(const SolidCavityFace& f, Corner x) {
   return f.corners[0] == x || f.corners[1] == x || f.corners[2] == x;
 }
 
 }  // namespace
 
-double InsertionCavity::worth(Point3 p, const CavityFace& f, double least) const {
+double InsertionCavity::worth(Point3 p, const SolidCavityFace& f, double least) const {
   const double shape = min_dihedral_sine(p, f.points[0], f.points[1], f.points[2]);
   if (shape <= least || shape <= 0) return shape;
   const TetMeasures m = measure_tet(p, f.points[0], f.points[1], f.points[2]);
@@ -99,7 +99,7 @@ bool InsertionCavity::holds(TetCopy c) const {
 }
 
 bool InsertionCavity::may_cross(std::size_t face) const {
-  const CavityFace& f = now_.faces[face];
+  const SolidCavityFace& f = now_.faces[face];
   if (f.facet != kNoFacet) return false;
   const Tet& owner = mesh_.tet(now_.tets[f.owner].t);
   const HalfFace behind = owner.nb[sides_[face]];
@@ -112,7 +112,7 @@ std::size_t InsertionCavity::worst_crossable() const {
   double worst = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < now_.faces.size(); ++i) {
     if (!may_cross(i)) continue;
-    const CavityFace& f = now_.faces[i];
+    const SolidCavityFace& f = now_.faces[i];
     const double shape = min_dihedral_sine(now_.point, f.points[0], f.points[1], f.points[2]);
     if (shape >= worst) continue;
     worst = shape;
@@ -143,7 +143,7 @@ void InsertionCavity::add(TetCopy c, std::uint32_t entered) {
       }
       continue;
     }
-    CavityFace face;
+    SolidCavityFace face;
     for (std::size_t j = 0; j < 3; ++j) {
       face.corners[j] = mesh_.corner(c, kFaceCorners[i][j]);
       face.points[j] = mesh_.lift(face.corners[j]);
@@ -183,12 +183,12 @@ bool InsertionCavity::loses_nothing() const {
   for (const TetCopy& c : now_.tets) {
     for (std::uint32_t i = 0; i < 4; ++i) {
       const Corner x = mesh_.corner(c, i);
-      if (!kept([&](const CavityFace& f) { return has(f, x); })) return false;
+      if (!kept([&](const SolidCavityFace& f) { return has(f, x); })) return false;
     }
     for (const auto& e : kEdgeCorners) {
       const Corner a = mesh_.corner(c, e[0]), b = mesh_.corner(c, e[1]);
       if (mesh_.segment_of(a, b) == kNoSegment) continue;
-      if (!kept([&](const CavityFace& f) { return has(f, a) && has(f, b); })) return false;
+      if (!kept([&](const SolidCavityFace& f) { return has(f, a) && has(f, b); })) return false;
     }
   }
   return true;

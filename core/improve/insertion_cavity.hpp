@@ -26,10 +26,10 @@ class InsertionCavity {
   // point in place. Broken bounds count as poor shapes; whether they are kept is the caller's to
   // look at.
   [[nodiscard]] bool search(TetId t, double wanted);
-  [[nodiscard]] const Cavity& best() const { return best_; }
+  [[nodiscard]] const SolidCavity& best() const { return best_; }
 
  private:
-  [[nodiscard]] double worth(Point3 p, const CavityFace& f, double least) const;
+  [[nodiscard]] double worth(Point3 p, const SolidCavityFace& f, double least) const;
   [[nodiscard]] double star_worth(Point3 p, double least);
   double place_point(std::span<const double> steps, double reach);
   [[nodiscard]] Point3 centroid() const;
@@ -44,7 +44,7 @@ class InsertionCavity {
   SolidEditor& editor_;
   QuotientTetrahedralization& mesh_;
   const SolidCriteria& criteria_;
-  Cavity now_, best_;
+  SolidCavity now_, best_;
   std::vector<std::uint32_t> sides_;  // of now_.faces: which face of its owner each is
   std::uint32_t epoch_ = 0;
 };

@@ -83,11 +83,16 @@ bool SolidSurgery::do_collapse(const Collapse& plan) {
   }
   // Two subsegments in one line become one: the outline of the facets there loses a corner.
   const bool on_segment = plan.kind == SolidVertexKind::kSegment;
-  if (!apply(star_, new_tets_, on_segment ? Outline::kChanged : Outline::kKept)) return false;
+  std::array<EdgeKey, 3> edges;
   if (on_segment) {
-    mesh_.set_segment(mesh_.edge_key(plan.goes, plan.stays), kNoSegment);
-    mesh_.set_segment(mesh_.edge_key(plan.goes, plan.behind), kNoSegment);
-    mesh_.set_segment(mesh_.edge_key(plan.stays, plan.behind), plan.segment);
+    edges = {mesh_.edge_key(plan.goes, plan.stays), mesh_.edge_key(plan.goes, plan.behind),
+             mesh_.edge_key(plan.stays, plan.behind)};
+  }
+  if (!apply(star_, new_tets_, {edges.data(), on_segment ? edges.size() : 0})) return false;
+  if (on_segment) {
+    mesh_.set_segment(edges[0], kNoSegment);
+    mesh_.set_segment(edges[1], kNoSegment);
+    mesh_.set_segment(edges[2], plan.segment);
   }
   mesh_.release_vertex(plan.goes.v);
   editor_.count_collapse();

@@ -108,8 +108,8 @@ bool SolidSurgery::better(const Worth& now, const Worth& before) {
 
 bool SolidSurgery::apply(std::span<const TetCopy> removed,
                          std::span<const NewTet> added,
-                         Outline outline) {
-  if (!editor_.replace(removed, added, outline)) return false;
+                         std::span<const EdgeKey> segment_edges) {
+  if (!editor_.replace(removed, added, segment_edges)) return false;
   note_added();
   return true;
 }
@@ -295,7 +295,7 @@ bool SolidSurgery::remove_edge(TetId t, std::uint32_t i, std::uint32_t j) {
     }
   }
   if (!accepts(worth_of(new_tets_), before)) return false;
-  if (!apply(r.tets, new_tets_, Outline::kKept)) return false;
+  if (!apply(r.tets, new_tets_)) return false;
   editor_.count_flip();
   return true;
 }
@@ -325,8 +325,7 @@ bool SolidSurgery::remove_face(TetId t, std::uint32_t i) {
     n.region = tet.region;
     new_tets_.push_back(n);
   }
-  if (!accepts(worth_of(new_tets_), before) || !apply(removed, new_tets_, Outline::kKept))
-    return false;
+  if (!accepts(worth_of(new_tets_), before) || !apply(removed, new_tets_)) return false;
   editor_.count_flip();
   return true;
 }
@@ -334,10 +333,10 @@ bool SolidSurgery::remove_face(TetId t, std::uint32_t i) {
 bool SolidSurgery::insert_point(TetId t) {
   const double wanted = lenient_ ? kOpeningShape : kInsertionGain * shapes_[t];
   if (!insertion_.search(t, wanted)) return false;
-  const Cavity& cavity = insertion_.best();
+  const SolidCavity& cavity = insertion_.best();
   const Worth before = worth_of(cavity.tets);
   Worth now;
-  for (const CavityFace& f : cavity.faces) {
+  for (const SolidCavityFace& f : cavity.faces) {
     const TetMeasures m = measure_tet(cavity.point, f.points[0], f.points[1], f.points[2]);
     if (is_flat(m)) return false;
     include(now, min_dihedral_sine(cavity.point, f.points[0], f.points[1], f.points[2]), m,

@@ -126,10 +126,9 @@ class SolidSurgery {
     return is_broken(before) ? 0 : before.shape;
   }
   [[nodiscard]] static bool is_broken(const Worth& w) { return w.excess > 1 || w.exempt > 1; }
-  using Outline = QuotientTetrahedralization::Outline;
   [[nodiscard]] bool apply(std::span<const TetCopy> removed,
                            std::span<const NewTet> added,
-                           Outline outline);
+                           std::span<const EdgeKey> segment_edges = {});
 
   // Edge removal.
   struct Ring {

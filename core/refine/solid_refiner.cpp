@@ -142,7 +142,7 @@ SolidRefiner::Cause SolidRefiner::cause_of(TetId t) const {
   return cause;
 }
 
-bool SolidRefiner::allowed(const Cavity& cavity, const Cause& cause, double share) const {
+bool SolidRefiner::allowed(const SolidCavity& cavity, const Cause& cause, double share) const {
   double nearest = std::sqrt(cavity.nearest2);
   if (mesh_.fold() > 1) {
     const Point3 p = cavity.point;
@@ -163,7 +163,7 @@ bool SolidRefiner::find_cavity(Point3 p, const SolidLocation& where, const Cause
   return editor_.find_cavity(p, where, cavity_, cause.size ? kAny : SolidEditor::kManyDropped);
 }
 
-SolidRefiner::Outcome SolidRefiner::insert(const Cavity& cavity,
+SolidRefiner::Outcome SolidRefiner::insert(const SolidCavity& cavity,
                                            SolidVertexKind kind,
                                            std::int32_t parent,
                                            bool on_axis,
@@ -205,12 +205,12 @@ SolidRefiner::Outcome SolidRefiner::treat(TetId t) {
   return done;
 }
 
-SolidRefiner::Encroached SolidRefiner::encroached_by(const Cavity& cavity, bool facets) const {
+SolidRefiner::Encroached SolidRefiner::encroached_by(const SolidCavity& cavity, bool facets) const {
   Encroached found;
   const Point3 p = cavity.point;
   double worst = kEncroachment2;
   // Subsegments go first: a subfacet beside one may be mended with it.
-  for (const CavityFace& f : cavity.faces) {
+  for (const SolidCavityFace& f : cavity.faces) {
     for (std::size_t j = 0; j < 3; ++j) {
       const std::size_t k = (j + 1) % 3;
       if (mesh_.segment_of(f.corners[j], f.corners[k]) == kNoSegment) continue;
@@ -226,7 +226,7 @@ SolidRefiner::Encroached SolidRefiner::encroached_by(const Cavity& cavity, bool 
     }
   }
   if (found.what != Encroached::What::kNothing || !facets) return found;
-  for (const CavityFace& f : cavity.faces) {
+  for (const SolidCavityFace& f : cavity.faces) {
     if (f.facet == kNoFacet) continue;
     const Point3 centre = triangle_circumcentre(f.points[0], f.points[1], f.points[2]);
     const double share = squared_distance(p, centre) / squared_distance(f.points[0], centre);

@@ -108,8 +108,8 @@ class SolidRefiner {
   [[nodiscard]] Outcome split_too_large(TetId t);
   Outcome split_edge(TetId t, Corner a, Corner b, const Cause& cause);
   [[nodiscard]] bool find_cavity(Point3 p, const SolidLocation& where, const Cause& cause);
-  [[nodiscard]] bool allowed(const Cavity& cavity, const Cause& cause, double share) const;
-  [[nodiscard]] Outcome insert(const Cavity& cavity,
+  [[nodiscard]] bool allowed(const SolidCavity& cavity, const Cause& cause, double share) const;
+  [[nodiscard]] Outcome insert(const SolidCavity& cavity,
                                SolidVertexKind kind,
                                std::int32_t parent,
                                bool on_axis,
@@ -126,7 +126,7 @@ class SolidRefiner {
     TetCopy at;
     Corner a, b;
   };
-  [[nodiscard]] Encroached encroached_by(const Cavity& cavity, bool facets) const;
+  [[nodiscard]] Encroached encroached_by(const SolidCavity& cavity, bool facets) const;
 
   SolidEditor& editor_;
   QuotientTetrahedralization& mesh_;
@@ -141,7 +141,7 @@ class SolidRefiner {
   std::uint64_t most_tets_ = std::numeric_limits<std::uint64_t>::max();
   double least_distance_ = 0;
   std::vector<std::uint8_t> depth_;  // per vertex
-  Cavity cavity_;
+  SolidCavity cavity_;
   SolidRefineCounters counters_;
 };
 

@@ -119,12 +119,11 @@ QuotientTetrahedralization::FaceSlot& QuotientTetrahedralization::face_slot(cons
 }
 
 // Exclusive or over the edges of faces: edges between two faces of one facet cancel.
-std::uint64_t QuotientTetrahedralization::outline_hash(Corner a,
-                                                       Corner b,
-                                                       Corner c,
-                                                       std::int32_t facet) const {
-  const auto edge = [&](Corner p, Corner q) {
+std::uint64_t QuotientTetrahedralization::outline_hash(
+    Corner a, Corner b, Corner c, std::int32_t facet, std::span<const EdgeKey> without) const {
+  const auto edge = [&](Corner p, Corner q) -> std::uint64_t {
     const EdgeKey key = edge_key(p, q);
+    if (std::find(without.begin(), without.end(), key) != without.end()) return 0;
     const auto u32 = [](std::int32_t i) {
       return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i));
     };
@@ -135,14 +134,16 @@ std::uint64_t QuotientTetrahedralization::outline_hash(Corner a,
 
 bool QuotientTetrahedralization::match_faces(std::span<const TetCopy> removed,
                                              std::span<const NewTet> added,
-                                             Outline outline) {
+                                             Outlines outlines,
+                                             std::span<const EdgeKey> segment_edges) {
+  const bool compared = outlines == Outlines::kCompared;
   reserve_face_slots(4 * (removed.size() + added.size()));
   const std::uint32_t epoch = new_epoch();
   for (const TetCopy& c : removed) {
     if (tets_[c.t].stamp == epoch) return false;
     tets_[c.t].stamp = epoch;
   }
-  std::uint64_t outlines = 0;
+  std::uint64_t difference = 0;  // of the outlines
   std::size_t uncovered = 0;
   for (const TetCopy& c : removed) {
     const Tet& t = tets_[c.t];
@@ -152,8 +153,8 @@ bool QuotientTetrahedralization::match_faces(std::span<const TetCopy> removed,
       const KeyedFace face = face_key(p, q, r);
       FaceSlot& slot = face_slot(face.key);
       const bool outside = t.nb[i] != kNoHalfFace && tets_[tet_of(t.nb[i])].stamp != epoch;
-      if (!slot.removed && !outside && t.facet[i] != kNoFacet && outline == Outline::kKept) {
-        outlines ^= outline_hash(p, q, r, t.facet[i]);
+      if (!slot.removed && !outside && t.facet[i] != kNoFacet && compared) {
+        difference ^= outline_hash(p, q, r, t.facet[i], segment_edges);
       }
       slot.removed = true;
       slot.facet = t.facet[i];
@@ -184,8 +185,8 @@ bool QuotientTetrahedralization::match_faces(std::span<const TetCopy> removed,
         slot.new_facet = facet;
         if (outside) {
           --uncovered;
-        } else if (facet != kNoFacet && outline == Outline::kKept) {
-          outlines ^= outline_hash(p, q, r, facet);
+        } else if (facet != kNoFacet && compared) {
+          difference ^= outline_hash(p, q, r, facet, segment_edges);
         }
       } else if (slot.new_facet != facet) {
         return false;
@@ -194,7 +195,7 @@ bool QuotientTetrahedralization::match_faces(std::span<const TetCopy> removed,
       new_refs_.push_back(face.reference);
     }
   }
-  if (uncovered != 0 || outlines != 0) return false;
+  if (uncovered != 0 || difference != 0) return false;
   for (const FaceSlot* slot : new_faces_) {
     // A face that occurs once lies on the hull and belongs to a facet.
     if (slot->outside == kNoHalfFace && slot->uses == 1 && slot->new_facet == kNoFacet) {
@@ -206,8 +207,9 @@ bool QuotientTetrahedralization::match_faces(std::span<const TetCopy> removed,
 
 bool QuotientTetrahedralization::replace(std::span<const TetCopy> removed,
                                          std::span<const NewTet> added,
-                                         Outline outline) {
-  if (!match_faces(removed, added, outline)) return false;
+                                         Outlines outlines,
+                                         std::span<const EdgeKey> segment_edges) {
+  if (!match_faces(removed, added, outlines, segment_edges)) return false;
   for (const TetCopy& c : removed) {
     if (trial_.open) {
       keep(c.t);

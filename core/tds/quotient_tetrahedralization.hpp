@@ -174,17 +174,19 @@ class QuotientTetrahedralization {
   // in the same frame: links follow from the faces' canonical names, so that tetrahedra may meet
   // their own copies. The caller has checked orientation. Ids of the new tetrahedra: added_ids().
   // False, with nothing changed, if the faces do not fit together, if the two sides of a face name
-  // different facets, or (Outline::kKept) if the subfacets of a facet that go and those that come
-  // do not have the same outline.
-  enum class Outline : std::uint8_t { kKept, kChanged };
+  // different facets, or if the subfacets of a facet that go and those that come do not have the
+  // same outline. `segment_edges`: subsegments that go and come in their place, in the same line;
+  // outlines may differ in these.
   [[nodiscard]] bool replace(std::span<const TetCopy> removed,
                              std::span<const NewTet> added,
-                             Outline outline = Outline::kKept);
+                             std::span<const EdgeKey> segment_edges = {}) {
+    return replace(removed, added, Outlines::kCompared, segment_edges);
+  }
   [[nodiscard]] std::span<const TetId> added_ids() const { return added_ids_; }
 
   // From scratch: as replace with nothing removed; faces that occur once must have a facet.
   [[nodiscard]] bool build(std::span<const NewTet> tets) {
-    return replace({}, tets, Outline::kChanged);
+    return replace({}, tets, Outlines::kNew, {});
   }
 
   // Edits that may turn out to be of no use: what they overwrite is kept from begin_trial() on,
@@ -247,10 +249,17 @@ class QuotientTetrahedralization {
   [[nodiscard]] const Vertex& vertex(VertexId v) const { return vertices_[idx(v)]; }
   [[nodiscard]] FaceSlot& face_slot(const FaceKey& key);
   void reserve_face_slots(std::size_t count);
+  enum class Outlines : std::uint8_t { kCompared, kNew };
+  [[nodiscard]] bool replace(std::span<const TetCopy> removed,
+                             std::span<const NewTet> added,
+                             Outlines outlines,
+                             std::span<const EdgeKey> segment_edges);
   [[nodiscard]] bool match_faces(std::span<const TetCopy> removed,
                                  std::span<const NewTet> added,
-                                 Outline outline);
-  [[nodiscard]] std::uint64_t outline_hash(Corner a, Corner b, Corner c, std::int32_t facet) const;
+                                 Outlines outlines,
+                                 std::span<const EdgeKey> segment_edges);
+  [[nodiscard]] std::uint64_t outline_hash(
+      Corner a, Corner b, Corner c, std::int32_t facet, std::span<const EdgeKey> without) const;
   TetId take_slot();
   void keep(TetId t) { trial_.tets.emplace_back(t, tets_[t]); }
   void keep(VertexId v) { trial_.vertices.emplace_back(v, vertices_[idx(v)]); }

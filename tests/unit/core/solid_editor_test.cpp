@@ -12,7 +12,6 @@ namespace symcell {
 namespace {
 
 using Kind = SolidLocation::Kind;
-using Outline = QuotientTetrahedralization::Outline;
 
 class SolidEditorFold : public testing::TestWithParam<std::int32_t> {
  protected:
@@ -33,7 +32,7 @@ class SolidEditorFold : public testing::TestWithParam<std::int32_t> {
   // Whether the point went in; either way the mesh is sound, and as before if it did not.
   bool insert(const SolidLocation& where, Point3 p) {
     const auto before = test::fingerprint(mesh());
-    Cavity cavity;
+    SolidCavity cavity;
     VertexId v = SolidEditor::kNoVertex;
     if (editor_.find_cavity(p, where, cavity)) {
       SolidVertexKind kind = SolidVertexKind::kFree;
@@ -208,7 +207,7 @@ TEST_P(SolidEditorFold, ReplaceRefusesWhatDoesNotFit) {
   for (const TetId t : tets()) {
     const auto before = test::fingerprint(mesh());
     const std::array<TetCopy, 1> removed = {TetCopy{t, 0}};
-    EXPECT_FALSE(editor_.replace(removed, {}, Outline::kKept));
+    EXPECT_FALSE(editor_.replace(removed, {}));
     for (std::uint32_t i = 0; i < 4; ++i) {
       const Tet& tet = mesh().tet(t);
       if (tet.facet[i] == kNoFacet) continue;
@@ -216,7 +215,7 @@ TEST_P(SolidEditorFold, ReplaceRefusesWhatDoesNotFit) {
       if (tet.nb[i] == kNoHalfFace) {
         // Another facet here: two facets have other outlines then.
         n.facet[i] = tet.facet[i] == 0 ? 1 : 0;
-        EXPECT_FALSE(editor_.replace(removed, std::array{n}, Outline::kKept));
+        EXPECT_FALSE(editor_.replace(removed, std::array{n}));
         ++outlines;
         continue;
       }
@@ -224,7 +223,7 @@ TEST_P(SolidEditorFold, ReplaceRefusesWhatDoesNotFit) {
       if (behind.t == t) continue;
       const std::array<TetCopy, 2> both = {removed[0], behind};
       n.facet[i] = 0;
-      EXPECT_FALSE(editor_.replace(both, std::array{n, again(mesh(), behind)}, Outline::kChanged));
+      EXPECT_FALSE(editor_.replace(both, std::array{n, again(mesh(), behind)}));
       ++sides;
     }
     EXPECT_EQ(before, test::fingerprint(mesh()));
