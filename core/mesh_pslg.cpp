@@ -16,7 +16,9 @@
 #include "core/refine/refiner.hpp"
 #include "core/stats/quality.hpp"
 #include "core/symmetry/symmetrise.hpp"
+#include "core/tds/segment_cover.hpp"
 #include "core/tds/validate.hpp"
+#include "core/verify/check_cell.hpp"
 
 namespace symcell {
 namespace {
@@ -166,6 +168,12 @@ Result<WorkDone> refine_from_starts(InitialTriangulation& start,
   return best;
 }
 
+// Down to the Delaunay property, and that all of the domain is covered and nothing else.
+Result<void> check_mesh(const QuotientTriangulation& mesh, const SegmentCover& wanted) {
+  if (auto ok = validate(mesh, ValidationLevel::kDelaunay); !ok) return ok;
+  return compare_segment_covers(wanted, measure_segment_cover(mesh));
+}
+
 void record(const SymmetricPslg& symmetric, Statistics::Symmetry& out) {
   out.fold = symmetric.fold;
   out.axis_origin = {symmetric.center.x, symmetric.center.y, 0};
@@ -209,6 +217,7 @@ Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
   if (!start) return tl::unexpected<Error>(start.error());
   stats.timings_ms.initial = watch.lap();
 
+  const SegmentCover wanted = measure_segment_cover(start->mesh);
   Criteria criteria(start->mesh, start->subdomains, options);
   if (auto ok = check_area_budget(*start, criteria, context); !ok) {
     return tl::unexpected<Error>(ok.error());
@@ -219,18 +228,20 @@ Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
   stats.timings_ms.refine = watch.lap();
 
   context.report(Phase::kCell, 0.92, start->mesh.triangle_count(), 1);
-  if (auto ok = validate(start->mesh, ValidationLevel::kDelaunay); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  if (auto ok = check_mesh(start->mesh, wanted); !ok) return tl::unexpected<Error>(ok.error());
+  stats.timings_ms.check = watch.lap();
   if (auto ok = count_exempt(start->mesh, criteria, stats); !ok) {
     return tl::unexpected<Error>(ok.error());
   }
   auto cut = cut_cell(start->mesh);
   if (!cut) return tl::unexpected<Error>(cut.error());
   outcome.mesh = build_cell_mesh(*start, *cut, *symmetric);
+  stats.timings_ms.cell = watch.lap();
+  if (auto ok = check_cell(outcome.mesh); !ok) return tl::unexpected<Error>(ok.error());
+  stats.timings_ms.check += watch.lap();
   if (options.order == 2) outcome.mesh = elevate_to_quadratic(outcome.mesh);
   measure_cell_2(outcome.mesh, stats);
-  stats.timings_ms.cell = watch.lap();
+  stats.timings_ms.cell += watch.lap();
   stats.timings_ms.total = total.lap();
   stats.peak_memory_bytes = peak_memory_bytes();
   context.report(Phase::kDone, 1, stats.cell.elements, 1);

@@ -11,6 +11,7 @@
 #include "core/initial/solid_starts.hpp"
 #include "core/refine_solid.hpp"
 #include "core/stats/quality.hpp"
+#include "core/verify/check_cell.hpp"
 
 namespace symcell {
 namespace {
@@ -126,16 +127,25 @@ Result<MeshOutcome> mesh_solid(const SectorSource& source,
     context.report(Phase::kCell, 0.92, mesh.tet_count(), 1);
     const auto cut = cut_solid_cell(mesh, context);
     stats.timings_ms.cell += milliseconds_since(start);
+    Error last;
     if (cut) {
-      stats.refinement = refined->refinement;
-      stats.exempt = std::move(refined->exempt);
-      stats.delaunay = refined->delaunay;
       outcome.mesh = build_solid_cell_mesh(refined->solid, *cut, source.symmetry());
-      break;
+      const auto begun = Clock::now();
+      const auto sound = check_cell(outcome.mesh, &refined->solid.cover.boundary);
+      stats.timings_ms.check += milliseconds_since(begun) + refined->check_ms;
+      if (sound) {
+        stats.refinement = refined->refinement;
+        stats.exempt = std::move(refined->exempt);
+        stats.delaunay = refined->delaunay;
+        break;
+      }
+      last = sound.error();
+    } else {
+      last = cut.error();
     }
     // Rarely, in narrow sectors, a mesh has no cell without flaws: another one has.
-    const bool may_go_on = cut.error().code == ErrorCode::kInternal && attempt < kMostCuts;
-    if (!may_go_on || !starts.has_next()) return tl::unexpected<Error>(cut.error());
+    const bool may_go_on = last.code == ErrorCode::kInternal && attempt < kMostCuts;
+    if (!may_go_on || !starts.has_next()) return tl::unexpected<Error>(last);
   }
   const auto start = Clock::now();
   if (options.order == 2) outcome.mesh = elevate_to_quadratic(outcome.mesh);

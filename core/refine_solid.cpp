@@ -1,6 +1,7 @@
 #include "core/refine_solid.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -12,6 +13,7 @@
 #include "core/delaunay/solid_legalise.hpp"
 #include "core/improve/solid_improver.hpp"
 #include "core/refine/solid_refiner.hpp"
+#include "core/tds/constraints.hpp"
 #include "core/tds/validate_tetrahedra.hpp"
 
 namespace symcell {
@@ -233,6 +235,13 @@ Result<void> refine_alone(SolidEditor& editor,
   return refine(editor, criteria, kDepthsDelaunay[0], context, work);
 }
 
+// Whether all of the facets and segments is covered, once, and nothing else.
+Result<void> check_cover(const InitialTetrahedralization& solid) {
+  const auto cover = measure_facet_cover(constraints_of(solid.mesh, solid.axis_segment()));
+  if (!cover) return tl::unexpected<Error>(cover.error());
+  return compare_facet_covers(solid.cover, *cover, solid.diameter);
+}
+
 Statistics::Refinement count_work(const SolidEditor& editor, const SolidRefineCounters& refined) {
   Statistics::Refinement work;
   const QuotientTetrahedralization& mesh = editor.mesh();
@@ -282,8 +291,12 @@ Result<RefinedSolid> refine_solid(InitialTetrahedralization solid,
   }
   result.refinement = count_work(editor, work.refined);
   editor.compact();  // what follows goes from neighbour to neighbour
+  const auto begun = std::chrono::steady_clock::now();
   const auto report = validate_tetrahedra(mesh, ValidationLevel::kEmbedding, volume);
   if (!report) return tl::unexpected<Error>(report.error());
+  if (auto ok = check_cover(result.solid); !ok) return tl::unexpected<Error>(ok.error());
+  result.check_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count();
   result.delaunay = count_illegal(editor) == 0;
   if (auto ok = count_exempt(editor, criteria, result); !ok) {
     return tl::unexpected<Error>(ok.error());

@@ -25,6 +25,7 @@ struct RefinedSolid {
   double least_exempt_sine = 1;
   // Tetrahedra that the volume bounds ask for by themselves.
   double least_count = 0;
+  double check_ms = 0;  // of the time, for looking at what was made
 
   [[nodiscard]] std::uint64_t count() const { return solid.mesh.tet_count(); }
 };

@@ -43,8 +43,9 @@ Json cell_to_json(const Statistics::Cell& cell, bool planar) {
 Json timings_to_json(const Statistics::TimingsMs& t) {
   return {{"parse", number(t.parse)},     {"symmetry", number(t.symmetry)},
           {"initial", number(t.initial)}, {"refine", number(t.refine)},
-          {"cell", number(t.cell)},       {"restore", number(t.restore)},
-          {"write", number(t.write)},     {"total", number(t.total)}};
+          {"cell", number(t.cell)},       {"check", number(t.check)},
+          {"restore", number(t.restore)}, {"write", number(t.write)},
+          {"total", number(t.total)}};
 }
 
 Json folds_to_json(const std::vector<FoldCandidate>& folds) {

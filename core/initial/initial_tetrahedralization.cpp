@@ -1,5 +1,6 @@
 #include "core/initial/initial_tetrahedralization.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -7,6 +8,7 @@
 #include "core/initial/cut_section.hpp"
 #include "core/initial/sector_mesh.hpp"
 #include "core/initial/sector_parts.hpp"
+#include "core/tds/constraints.hpp"
 #include "core/tds/validate_tetrahedra.hpp"
 
 namespace symcell {
@@ -48,13 +50,11 @@ class Gluer {
     release_unused_vertices();
     add_segments();
     if (auto ok = check(); !ok) return tl::unexpected<Error>(ok.error());
+    if (auto ok = measure_cover(); !ok) return tl::unexpected<Error>(ok.error());
     return std::move(result_);
   }
 
  private:
-  [[nodiscard]] std::int32_t axis_segment() const {
-    return static_cast<std::int32_t>(sector_.segment_markers.size());
-  }
   [[nodiscard]] bool on_axis(std::int32_t sector_vertex) const {
     return sector_.on_axis[at(sector_.vertices[at(sector_vertex)].orbit)] != 0;
   }
@@ -149,7 +149,7 @@ class Gluer {
         const Corner a = mesh.corner(t, i), b = mesh.corner(t, j);
         const EdgeKey key = mesh.edge_key(a, b);
         std::int32_t segment = wanted.find(key);
-        if (segment < 0 && mesh.on_axis(a.v) && mesh.on_axis(b.v)) segment = axis_segment();
+        if (segment < 0 && mesh.on_axis(a.v) && mesh.on_axis(b.v)) segment = result_.axis_segment();
         if (segment >= 0) mesh.set_segment(key, segment);
       }
     }
@@ -166,6 +166,43 @@ class Gluer {
                     std::to_string(expected));
     }
     return {};
+  }
+
+  // The faces of a closed surface are all of the boundary; of seeded models some lie in voids.
+  Result<void> measure_cover() {
+    auto cover = measure_facet_cover(constraints_of(result_.mesh, result_.axis_segment()));
+    if (!cover) return failed(cover.error().message);
+    result_.cover = std::move(*cover);
+    double reach = 0, low = 0, high = 0;
+    for (const Point3& p : sector_.orbit_points) {
+      reach = std::max(reach, std::hypot(p.x, p.y));
+      low = std::min(low, p.z);
+      high = std::max(high, p.z);
+    }
+    result_.diameter = std::hypot(2 * reach, high - low);
+    if (!sector_.nesting_decides) return {};
+    const auto wanted = measure_facet_cover(constraints_of_sector());
+    if (!wanted) return failed(wanted.error().message);
+    const auto same = compare_facet_covers(*wanted, result_.cover, result_.diameter);
+    if (!same) return failed(same.error().message);
+    return {};
+  }
+
+  [[nodiscard]] Constraints constraints_of_sector() const {
+    Constraints out;
+    out.fold = sector_.fold;
+    out.points = sector_.orbit_points;
+    for (const std::uint8_t axis : sector_.on_axis) {
+      out.on_axis.push_back(sector_.fold > 1 ? axis : 0);
+    }
+    const auto copy = [&](std::int32_t v) { return sector_.vertices[at(v)]; };
+    for (const SectorFace& f : sector_.faces) {
+      out.subfacets.push_back({{copy(f.v[0]), copy(f.v[1]), copy(f.v[2])}, f.facet, false});
+    }
+    for (const SectorEdge& e : sector_.edges) {
+      out.subsegments.push_back({copy(e.a), copy(e.b), e.segment});
+    }
+    return out;
   }
 
   const SolidSector& sector_;

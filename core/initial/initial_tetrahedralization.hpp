@@ -18,6 +18,7 @@
 #include "core/base/execution_context.hpp"
 #include "core/symmetry/solid_sector.hpp"
 #include "core/tds/quotient_tetrahedralization.hpp"
+#include "core/verify/facet_cover.hpp"
 
 namespace symcell {
 
@@ -37,6 +38,13 @@ struct InitialTetrahedralization {
   // With ignore_markers: regions of the copies, by seeds; see cells/build_solid_cell_mesh.
   std::vector<SectorRegion> seeds;
   bool regions_differ = false;
+  // What every mesh made from this one has to cover; see verify/facet_cover.hpp.
+  FacetCover cover;
+  double diameter = 0;  // of the model, about
+  // Of edges in mesh.edges() that lie on the axis and on no segment.
+  [[nodiscard]] std::int32_t axis_segment() const {
+    return static_cast<std::int32_t>(segment_markers.size()) - 1;
+  }
 };
 
 // Vertices: sector orbit i is vertex i; kInput, kSegment or kFacet by its kind in the sector, those

@@ -68,6 +68,7 @@ struct Statistics {
     double initial = 0;
     double refine = 0;
     double cell = 0;
+    double check = 0;    // of the finished mesh against what it was made from
     double restore = 0;  // filled in by the caller that wrote the full mesh
     double write = 0;    // likewise
     double total = 0;

@@ -41,6 +41,7 @@ TEST(StatisticsJson, HasEveryNameOfTheInterface) {
                               "/timings_ms/initial",
                               "/timings_ms/refine",
                               "/timings_ms/cell",
+                              "/timings_ms/check",
                               "/timings_ms/restore",
                               "/timings_ms/write",
                               "/timings_ms/total",

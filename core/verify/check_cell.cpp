@@ -1,0 +1,400 @@
+#include "core/verify/check_cell.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <numeric>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/rotation.hpp"
+
+namespace symcell {
+namespace {
+
+using Nodes = std::array<std::int32_t, 3>;  // of a facet, ascending; of an edge the third is -1
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Facet i lies opposite corner i; its nodes run counter-clockwise seen from outside.
+constexpr std::int32_t kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+constexpr std::int32_t kSides[3][2] = {{1, 2}, {2, 0}, {0, 1}};
+
+struct ElementFacet {
+  Nodes nodes;
+  bool even = true;  // the nodes run counter-clockwise seen from outside the element
+  std::int32_t element = 0;
+};
+
+// Sorts; true for an even permutation.
+bool sort_nodes(Nodes& n, std::int32_t dimension) {
+  bool even = true;
+  const auto order = [&](std::size_t i, std::size_t j) {
+    if (n[i] <= n[j]) return;
+    std::swap(n[i], n[j]);
+    even = !even;
+  };
+  order(0, 1);
+  if (dimension == 2) return even;
+  order(1, 2);
+  order(0, 1);
+  return even;
+}
+
+// A number that no two facets are expected to share, nor sums of some to be those of others.
+std::uint64_t number_of(const Nodes& n) {
+  const auto mix = [](std::uint64_t x) {
+    x ^= x >> 32;
+    x *= 0xd6e8feb86659fd93ULL;
+    x ^= x >> 29;
+    x *= 0x9e3779b97f4a7c15ULL;
+    return x ^ (x >> 32);
+  };
+  const auto u = [](std::int32_t i) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i));
+  };
+  return mix(mix(u(n[0]) << 32 | u(n[1])) + u(n[2]) * 0xbf58476d1ce4e5b9ULL);
+}
+
+std::string name_of(const Nodes& n) {
+  std::string name = "of nodes " + std::to_string(n[0]) + "-" + std::to_string(n[1]);
+  return n[2] < 0 ? name : name + "-" + std::to_string(n[2]);
+}
+
+tl::unexpected<Error> broken(const std::string& what) {
+  return fail(ErrorCode::kInternal, "mesh check 'cell': " + what);
+}
+
+class CellChecker {
+ public:
+  CellChecker(const SymmetryCellMesh& cell, const BoundaryTopology* boundary)
+      : cell_(cell),
+        boundary_(boundary),
+        dimension_(cell.dimension),
+        corners_(static_cast<std::size_t>(cell.dimension) + 1) {}
+
+  Result<void> run() {
+    if (auto ok = check_nodes(); !ok) return ok;
+    mark_surface();
+    if (auto ok = gather_facets(); !ok) return ok;
+    if (auto ok = check_bounds(); !ok) return ok;
+    if (auto ok = check_outer(); !ok) return ok;
+    if (auto ok = check_boundary(); !ok) return ok;
+    return check_links();
+  }
+
+ private:
+  [[nodiscard]] const std::int32_t* element(std::size_t e) const {
+    return &cell_.elements[e * corners_];
+  }
+
+  Result<void> check_nodes() {
+    std::vector<char> used(cell_.nodes.size(), 0);
+    for (std::size_t e = 0; e < cell_.element_count(); ++e) {
+      const std::int32_t* v = element(e);
+      for (std::size_t i = 0; i < corners_; ++i) {
+        if (v[i] < 0 || at(v[i]) >= used.size()) return broken("a corner is no node");
+        used[at(v[i])] = 1;
+        if (std::find(v, v + i, v[i]) != v + i) {
+          return broken("element " + std::to_string(e) + " names a node twice");
+        }
+      }
+    }
+    std::vector<std::pair<std::int32_t, std::int32_t>> copies;
+    std::vector<std::int32_t> first(cell_.orbit_points.size(), -1);
+    for (std::size_t n = 0; n < cell_.nodes.size(); ++n) {
+      const OrbitVertex v = cell_.nodes[n];
+      if (used[n] == 0) return broken("node " + std::to_string(n) + " is not used");
+      if (v.orbit < 0 || at(v.orbit) >= first.size() || v.exponent < 0 ||
+          v.exponent >= cell_.fold || (v.exponent != 0 && cell_.on_axis[at(v.orbit)] != 0)) {
+        return broken("node " + std::to_string(n) + " is no copy of an orbit");
+      }
+      std::int32_t& own = first[at(v.orbit)];
+      if (own >= 0) {
+        copies.emplace_back(v.orbit, v.exponent);
+        copies.emplace_back(v.orbit, cell_.nodes[at(own)].exponent);
+      }
+      if (own < 0) own = static_cast<std::int32_t>(n);
+    }
+    return check_copies(std::move(copies));
+  }
+
+  // Of orbits with several nodes the first is listed with each of the others.
+  static Result<void> check_copies(std::vector<std::pair<std::int32_t, std::int32_t>> copies) {
+    std::vector<std::pair<std::int32_t, std::int32_t>> others;
+    for (std::size_t i = 0; i < copies.size(); i += 2) {
+      if (copies[i] == copies[i + 1]) return broken("two nodes are one copy of an orbit");
+      others.push_back(copies[i]);
+    }
+    std::sort(others.begin(), others.end());
+    if (std::adjacent_find(others.begin(), others.end()) != others.end()) {
+      return broken("two nodes are one copy of an orbit");
+    }
+    return {};
+  }
+
+  void mark_surface() {
+    marked_.assign(cell_.nodes.size(), 0);
+    for (const auto* list : {&cell_.boundary, &cell_.lower_facets, &cell_.higher_facets}) {
+      for (const std::int32_t n : *list) marked_[at(n)] = 1;
+    }
+  }
+
+  template <class F>
+  void each_facet(std::size_t e, const F& f) const {
+    const std::int32_t* v = element(e);
+    for (std::size_t i = 0; i < corners_; ++i) {
+      ElementFacet facet;
+      facet.element = static_cast<std::int32_t>(e);
+      if (dimension_ == 2) {
+        facet.nodes = {v[kSides[i][0]], v[kSides[i][1]], -1};
+      } else {
+        facet.nodes = {v[kFaces[i][0]], v[kFaces[i][1]], v[kFaces[i][2]]};
+      }
+      facet.even = sort_nodes(facet.nodes, dimension_);
+      f(facet);
+    }
+  }
+
+  [[nodiscard]] bool is_marked(std::int32_t n) const { return n >= 0 && marked_[at(n)] != 0; }
+  [[nodiscard]] bool all_marked(const Nodes& n) const {
+    return is_marked(n[0]) && is_marked(n[1]) && (n[2] < 0 || is_marked(n[2]));
+  }
+
+  // Those with a marked node are kept, sorted; of the others the sides must cancel.
+  Result<void> gather_facets() {
+    std::uint64_t sum = 0;
+    for (std::size_t e = 0; e < cell_.element_count(); ++e) {
+      each_facet(e, [&](const ElementFacet& f) {
+        if (is_marked(f.nodes[0]) || is_marked(f.nodes[1]) || is_marked(f.nodes[2])) {
+          facets_.push_back(f);
+        } else {
+          sum += f.even ? number_of(f.nodes) : ~number_of(f.nodes) + 1;
+        }
+      });
+    }
+    if (sum != 0) return broken("facets inside have not one element on each side");
+    std::sort(facets_.begin(), facets_.end(), [](const ElementFacet& a, const ElementFacet& b) {
+      return std::tie(a.nodes, a.element) < std::tie(b.nodes, b.element);
+    });
+    for (std::size_t i = 0, next = 0; i < facets_.size(); i = next) {
+      for (next = i; next < facets_.size() && facets_[next].nodes == facets_[i].nodes;) ++next;
+      const bool inner = next - i == 2 && facets_[i].even != facets_[i + 1].even;
+      if (!inner && (next - i != 1 || !all_marked(facets_[i].nodes))) {
+        return broken("the facet " + name_of(facets_[i].nodes) + " has " +
+                      std::to_string(next - i) + " elements");
+      }
+      if (inner) {
+        inner_.push_back(i);
+      } else {
+        outer_.push_back(facets_[i]);
+      }
+    }
+    role_.assign(outer_.size(), Role::kNone);
+    return {};
+  }
+
+  enum class Role : std::uint8_t { kNone, kLower, kHigher, kBoundary };
+
+  [[nodiscard]] Nodes nodes_of(const std::vector<std::int32_t>& list, std::size_t i) const {
+    const auto d = static_cast<std::size_t>(dimension_);
+    return {list[i * d], list[i * d + 1], dimension_ == 2 ? -1 : list[i * d + 2]};
+  }
+
+  // Index in outer_, -1: the facet is not there.
+  [[nodiscard]] std::int64_t find_outer(const Nodes& sorted) const {
+    const auto found =
+        std::lower_bound(outer_.begin(), outer_.end(), sorted,
+                         [](const ElementFacet& f, const Nodes& n) { return f.nodes < n; });
+    return found != outer_.end() && found->nodes == sorted ? found - outer_.begin() : -1;
+  }
+
+  Result<void> check_bounds() {
+    if (cell_.lower_facets.size() != cell_.higher_facets.size() ||
+        cell_.lower_to_higher.size() != cell_.nodes.size()) {
+      return broken("the bounds have different numbers of facets");
+    }
+    for (std::size_t i = 0; i < cell_.nodes.size(); ++i) {
+      const std::int32_t image = cell_.lower_to_higher[i];
+      if (image >= 0 && !is_image(cell_.nodes[i], image)) {
+        return broken("node " + std::to_string(i) + " is paired with what is not its image");
+      }
+    }
+    const std::size_t count = cell_.lower_facets.size() / static_cast<std::size_t>(dimension_);
+    for (std::size_t i = 0; i < count; ++i) {
+      Nodes low = nodes_of(cell_.lower_facets, i), high = nodes_of(cell_.higher_facets, i);
+      for (std::size_t j = 0; j < static_cast<std::size_t>(dimension_); ++j) {
+        if (!is_image(cell_.nodes[at(low[j])], high[j])) {
+          return broken("a facet of the higher bound is not the image of its lower one");
+        }
+        if (cell_.lower_to_higher[at(low[j])] != high[j]) {
+          return broken("node " + std::to_string(low[j]) + " of the lower bound is not paired");
+        }
+      }
+      const bool low_even = sort_nodes(low, dimension_), high_even = sort_nodes(high, dimension_);
+      const std::int64_t l = find_outer(low), h = find_outer(high);
+      if (l < 0 || h < 0 || l == h) {
+        return broken("the facet " + name_of(low) + " of a bound is not of the cell's surface");
+      }
+      Role &own = role_[static_cast<std::size_t>(l)], &image = role_[static_cast<std::size_t>(h)];
+      if (own != Role::kNone || image != Role::kNone) {
+        return broken("the facet " + name_of(low) + " is on a bound twice");
+      }
+      own = Role::kLower;
+      image = Role::kHigher;
+      const bool same_side = (outer_[static_cast<std::size_t>(l)].even == low_even) ==
+                             (outer_[static_cast<std::size_t>(h)].even == high_even);
+      if (same_side) return broken("both bounds are seen from one side at " + name_of(low));
+    }
+    return {};
+  }
+
+  [[nodiscard]] bool is_image(OrbitVertex v, std::int32_t image) const {
+    if (image < 0 || at(image) >= cell_.nodes.size()) return false;
+    const OrbitVertex w = cell_.nodes[at(image)];
+    const bool axis = cell_.fold > 1 && cell_.on_axis[at(v.orbit)] != 0;
+    return v.orbit == w.orbit && (axis || w.exponent == (v.exponent + 1) % cell_.fold);
+  }
+
+  // What is of no bound must be listed as boundary.
+  Result<void> check_outer() {
+    for (std::size_t i = 0; i < cell_.facet_count(); ++i) {
+      Nodes n = nodes_of(cell_.boundary, i);
+      sort_nodes(n, dimension_);
+      const std::int64_t found = find_outer(n);
+      if (found < 0) continue;  // inside, on a facet or segment of the model
+      Role& role = role_[static_cast<std::size_t>(found)];
+      if (role == Role::kNone) role = Role::kBoundary;
+    }
+    const auto open = std::find(role_.begin(), role_.end(), Role::kNone);
+    if (open == role_.end()) return {};
+    return broken("the facet " +
+                  name_of(outer_[static_cast<std::size_t>(open - role_.begin())].nodes) +
+                  " is open: on no bound and not of the boundary");
+  }
+
+  Result<void> check_boundary() {
+    pinched_.assign(cell_.orbit_points.size(), 0);
+    return dimension_ == 2 ? check_boundary_2() : check_boundary_3();
+  }
+
+  // More than two edges of the full mesh's boundary at a node: it touches itself there.
+  Result<void> check_boundary_2() {
+    std::vector<std::int64_t> ends(cell_.orbit_points.size(), 0);
+    for (std::size_t i = 0; i < outer_.size(); ++i) {
+      if (role_[i] != Role::kBoundary) continue;
+      for (std::size_t j = 0; j < 2; ++j) {
+        const auto orbit = at(cell_.nodes[at(outer_[i].nodes[j])].orbit);
+        ends[orbit] += cell_.on_axis[orbit] != 0 ? cell_.fold : 1;
+      }
+    }
+    for (std::size_t orbit = 0; orbit < ends.size(); ++orbit) {
+      if (ends[orbit] % 2 != 0) return broken("the boundary of the full mesh is open");
+      pinched_[orbit] = ends[orbit] > 2 ? 1 : 0;
+    }
+    return {};
+  }
+
+  Result<void> check_boundary_3() {
+    std::vector<OrbitTriangle> triangles;
+    for (std::size_t i = 0; i < outer_.size(); ++i) {
+      if (role_[i] != Role::kBoundary) continue;
+      const ElementFacet& f = outer_[i];
+      OrbitTriangle t{cell_.nodes[at(f.nodes[0])], cell_.nodes[at(f.nodes[1])],
+                      cell_.nodes[at(f.nodes[2])]};
+      if (!f.even) std::swap(t[1], t[2]);
+      triangles.push_back(t);
+    }
+    const BoundaryTopology found = boundary_topology(cell_.fold, cell_.on_axis, triangles);
+    for (const std::int32_t orbit : found.touching) pinched_[at(orbit)] = 1;
+    if (boundary_ == nullptr) return {};
+    if (found.shells != boundary_->shells || found.euler != boundary_->euler) {
+      return broken("the boundary has " + std::to_string(found.shells) +
+                    " shells and Euler characteristic " + std::to_string(found.euler) +
+                    " in place of " + std::to_string(boundary_->shells) + " and " +
+                    std::to_string(boundary_->euler));
+    }
+    if (found.open_edges > 0) return broken("the boundary of the full mesh is open");
+    if (found.pinched_vertices.size() != boundary_->pinched_vertices.size() ||
+        (found.pinched_edges > 0) != (boundary_->pinched_edges > 0)) {
+      return broken("the boundary of the full mesh touches itself");
+    }
+    return {};
+  }
+
+  // Corners of elements at marked nodes, and edges of elements between two, joined over facets.
+  Result<void> check_links() {
+    std::vector<std::int32_t> parent;
+    const auto root = [&](std::int32_t i) {
+      while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
+      return i;
+    };
+    using Place = std::tuple<std::int32_t, std::int32_t, std::int32_t>;  // nodes, element
+    std::vector<Place> places;
+    const auto each_place = [&](const ElementFacet& f, std::int32_t e, const auto& visit) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (!is_marked(f.nodes[i])) continue;
+        visit(Place{f.nodes[i], -1, e});
+        for (std::size_t j = 0; j < i && dimension_ == 3; ++j) {
+          if (is_marked(f.nodes[j])) visit(Place{f.nodes[j], f.nodes[i], e});
+        }
+      }
+    };
+    for (const ElementFacet& f : facets_) {
+      each_place(f, f.element, [&](const Place& p) { places.push_back(p); });
+    }
+    std::sort(places.begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    parent.resize(places.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto index = [&](const Place& p) {
+      return static_cast<std::int32_t>(std::lower_bound(places.begin(), places.end(), p) -
+                                       places.begin());
+    };
+    for (const std::size_t i : inner_) {
+      const std::int32_t other = facets_[i + 1].element;
+      each_place(facets_[i], facets_[i].element, [&](const Place& p) {
+        const std::int32_t a = root(index(p));
+        const std::int32_t b = root(index({std::get<0>(p), std::get<1>(p), other}));
+        parent[at(std::max(a, b))] = std::min(a, b);
+      });
+    }
+    for (std::size_t i = 1; i < places.size(); ++i) {
+      const auto [a, b, e] = places[i];
+      const auto [c, d, f] = places[i - 1];
+      if (a != c || b != d ||
+          root(static_cast<std::int32_t>(i)) == root(static_cast<std::int32_t>(i - 1))) {
+        continue;
+      }
+      const bool excused = pinched_[at(cell_.nodes[at(a)].orbit)] != 0 &&
+                           (b < 0 || pinched_[at(cell_.nodes[at(b)].orbit)] != 0);
+      if (excused) continue;
+      return broken(b < 0 ? "elements at node " + std::to_string(a) + " touch there only"
+                          : "elements at the edge " + name_of({a, b, -1}) + " touch there only");
+    }
+    return {};
+  }
+
+  const SymmetryCellMesh& cell_;
+  const BoundaryTopology* boundary_;
+  std::int32_t dimension_;
+  std::size_t corners_;
+  std::vector<char> marked_;          // nodes of the cell's surface, and of facets inside
+  std::vector<ElementFacet> facets_;  // with a marked node, sorted
+  std::vector<std::size_t> inner_;    // of these the first sides of those with two elements
+  std::vector<ElementFacet> outer_;   // with one element, sorted
+  std::vector<Role> role_;            // of outer_
+  std::vector<char> pinched_;         // orbits at which the full mesh touches itself
+};
+
+}  // namespace
+
+Result<void> check_cell(const SymmetryCellMesh& cell, const BoundaryTopology* boundary) {
+  return CellChecker(cell, boundary).run();
+}
+
+}  // namespace symcell
