@@ -1,7 +1,9 @@
 // The cut of the quotient into a cell: against all ways there are, for meshes small enough.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include "core/cells/extract_cell.hpp"
 #include "core/refine/refiner.hpp"
@@ -137,6 +139,31 @@ TEST(CutCell, RefinedMeshesUnrollIntoOnePieceAComponent) {
       expect_consistent(sample.mesh(), *cut);
       EXPECT_EQ(cut->lower.empty(), fold == 1);
       test::expect_delaunay(sample.mesh());
+    }
+  }
+}
+
+// Holes with a tip at the centre: what winds about it goes through it.
+Point2 polar(double radius, double angle) {
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+TEST(CutCell, HolesThatMeetAtTheCentre) {
+  for (const std::int32_t fold : {2, 3, 5, 8}) {
+    for (const double share : {0.1, 0.45, 0.9}) {
+      SCOPED_TRACE("fold " + std::to_string(fold) + " share " + std::to_string(share));
+      const double angle = share * std::numbers::pi / fold;  // half of a hole's
+      SectorBuilder builder(fold);
+      builder.add_loop({builder.add_vertex({9, 0}), builder.add_vertex(polar(9, 1.0 / fold))}, 1);
+      const auto o = builder.add_centre();
+      const auto a = builder.add_vertex(polar(1, -angle)), b = builder.add_vertex(polar(1, angle));
+      builder.add_closed({o, a, b}, 2);
+      builder.add_hole({0.5 * std::cos(angle), 0});
+      QuotientSample sample = test::triangulated(builder.pslg(), fold);
+      const auto cut = cut_cell(sample.mesh());
+      ASSERT_TRUE(cut) << cut.error().message;
+      EXPECT_EQ(cut->lower.size(), 1U);
+      expect_consistent(sample.mesh(), *cut);
     }
   }
 }
