@@ -175,6 +175,7 @@ bool check_fields(const MeshData& mesh, const std::string& tag, Checks& checks) 
     wrong = "the axis is no point and unit vector";
   }
   if (mesh.elements.empty()) wrong = "no elements";
+  if (mesh.single_precision) wrong = "coordinates are not of 64 bits";
   for (std::size_t i = 0; i < mesh.points.size() && wrong.empty(); ++i) {
     const Point3& p = mesh.points[i];
     const bool fits =

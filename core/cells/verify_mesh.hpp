@@ -6,7 +6,7 @@
 //
 // A mesh by itself:
 //
-//   *.fields                finite points, in the plane z = 0 if planar; unit axis; fold
+//   *.fields                finite points of 64 bits, in the plane z = 0 if planar; unit axis; fold
 //   *.corners               corners of an element are distinct, every node is used
 //   *.orientation           elements are positive, exactly
 //   *.duplicates            no two nodes at one place
