@@ -36,7 +36,7 @@ CASES = [
     ("3d/p3_06_cube_n3_body_diagonal.json", []),
     ("3d/p3_02_starprism_n5_tip12deg.json", ["--fold", "1"]),
     ("3d/r3_03_bracket_n4.stl", []),
-    ("3d/s3_01_flange_n8_coarse.stl", ["--max-volume", "1e9"]),
+    ("csg/box_one_tab.off", []),
 ]
 CSG = "csg"
 
