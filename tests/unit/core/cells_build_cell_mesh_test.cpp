@@ -7,9 +7,9 @@
 namespace symcell {
 namespace {
 
-using test::Sample;
+using test::QuotientSample;
 
-SymmetryCellMesh cell_of(const Sample& sample) {
+SymmetryCellMesh cell_of(const QuotientSample& sample) {
   const auto cut = cut_cell(sample.start.mesh);
   EXPECT_TRUE(cut) << cut.error().message;
   return build_cell_mesh(sample.start, cut.value(), sample.pslg);
@@ -19,7 +19,7 @@ TEST(BuildCellMesh, KeepsTheInvariantsOfTheCell) {
   for (const std::int32_t fold : {1, 2, 3, 4, 9, 24}) {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
       SCOPED_TRACE("fold " + std::to_string(fold) + " seed " + std::to_string(seed));
-      const Sample sample = test::random_sample(seed, fold);
+      const QuotientSample sample = test::random_sample(seed, fold);
       const SymmetryCellMesh cell = cell_of(sample);
       EXPECT_EQ(cell.fold, fold);
       EXPECT_EQ(cell.element_count(), sample.start.mesh.triangle_count());

@@ -10,7 +10,7 @@
 namespace symcell {
 namespace {
 
-using test::Sample;
+using test::QuotientSample;
 
 // Triangles that fit their neighbour across half-edge h when they stand at these exponents.
 bool fits(const QuotientTriangulation& mesh,
@@ -105,7 +105,7 @@ TEST(CutCell, HasTheFewestSymmetryEdgesThereAre) {
   std::map<std::int32_t, int> compared;
   for (const std::int32_t fold : {2, 3, 4, 5, 6}) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
-      Sample sample = test::random_sample(seed, fold);
+      QuotientSample sample = test::random_sample(seed, fold);
       const QuotientTriangulation& mesh = sample.mesh();
       const double choices = std::pow(fold, static_cast<double>(mesh.triangle_count()) - 1);
       if (choices > kMostChoices) continue;
@@ -124,7 +124,7 @@ TEST(CutCell, RefinedMeshesUnrollIntoOnePieceAComponent) {
   for (const std::int32_t fold : {1, 2, 3, 8, 36}) {
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
       SCOPED_TRACE("fold " + std::to_string(fold) + " seed " + std::to_string(seed));
-      Sample sample = test::random_sample(seed, fold);
+      QuotientSample sample = test::random_sample(seed, fold);
       MeshOptions options;
       options.min_angle_deg = 20;
       Criteria criteria(sample.mesh(), sample.start.subdomains, options);
@@ -143,7 +143,7 @@ TEST(CutCell, RefinedMeshesUnrollIntoOnePieceAComponent) {
 
 TEST(CutCell, PiecesThatDoNotWrapHaveNoBounds) {
   for (const std::int32_t fold : {2, 4, 7}) {
-    Sample sample = test::pads(fold);
+    QuotientSample sample = test::pads(fold);
     const auto cut = cut_cell(sample.mesh());
     ASSERT_TRUE(cut) << cut.error().message;
     EXPECT_TRUE(cut->lower.empty());

@@ -5,7 +5,7 @@ namespace symcell {
 namespace {
 
 using test::Dice;
-using test::Sample;
+using test::QuotientSample;
 
 VertexId insert_in(DelaunayEditor& editor, TriangleId t, Point2 x) {
   Cavity cavity;
@@ -29,7 +29,7 @@ TEST(DelaunayEditor, PointsInTrianglesKeepTheMeshDelaunay) {
   for (const std::int32_t fold : {1, 2, 3, 4, 6, 11, 36}) {
     for (std::uint64_t seed = 0; seed < 4; ++seed) {
       SCOPED_TRACE("fold " + std::to_string(fold) + " seed " + std::to_string(seed));
-      Sample sample = test::random_sample(seed, fold);
+      QuotientSample sample = test::random_sample(seed, fold);
       QuotientTriangulation& mesh = sample.mesh();
       const double area = test::area(mesh);
       DelaunayEditor editor(mesh);
@@ -51,7 +51,7 @@ TEST(DelaunayEditor, PointsOnEdgesSplitThemAndTheirSubsegments) {
   for (const std::int32_t fold : {1, 2, 3, 5, 12, 24}) {
     for (std::uint64_t seed = 20; seed < 24; ++seed) {
       SCOPED_TRACE("fold " + std::to_string(fold) + " seed " + std::to_string(seed));
-      Sample sample = test::random_sample(seed, fold);
+      QuotientSample sample = test::random_sample(seed, fold);
       QuotientTriangulation& mesh = sample.mesh();
       const double area = test::area(mesh);
       DelaunayEditor editor(mesh);
@@ -76,7 +76,7 @@ TEST(DelaunayEditor, PointsOnEdgesSplitThemAndTheirSubsegments) {
 }
 
 TEST(DelaunayEditor, HalvesOfASubsegmentKeepItsParent) {
-  Sample sample = test::triangulated(regular_ring(6, 2, 1), 6);
+  QuotientSample sample = test::triangulated(regular_ring(6, 2, 1), 6);
   QuotientTriangulation& mesh = sample.mesh();
   DelaunayEditor editor(mesh);
   const SubsegmentId s = 0;
@@ -103,7 +103,7 @@ TEST(DelaunayEditor, SplitOfTheSelfAdjacentTriangle) {
     for (const bool spokes : {false, true}) {
       for (const std::uint32_t side : {1U, 2U}) {
         SCOPED_TRACE("fold " + std::to_string(fold) + (spokes ? ", spokes" : ""));
-        Sample sample = test::wheel(fold, spokes);
+        QuotientSample sample = test::wheel(fold, spokes);
         QuotientTriangulation& mesh = sample.mesh();
         ASSERT_EQ(mesh.triangle_count(), 1U);
         const TriangleId t = test::live_triangles(mesh).front();
@@ -127,8 +127,9 @@ TEST(DelaunayEditor, PointsNearTheCentreFallBackToFlips) {
   for (const std::int32_t fold : {2, 3, 4, 5, 6, 8, 12, 50}) {
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
       SCOPED_TRACE("fold " + std::to_string(fold) + " seed " + std::to_string(seed));
-      Sample sample = fold == 2 ? test::triangulated(random_symmetric_pslg(4, 2, nullptr), 2)
-                                : test::wheel(fold, false);
+      QuotientSample sample = fold == 2
+                                  ? test::triangulated(random_symmetric_pslg(4, 2, nullptr), 2)
+                                  : test::wheel(fold, false);
       QuotientTriangulation& mesh = sample.mesh();
       DelaunayEditor editor(mesh);
       Dice dice(seed);
@@ -148,7 +149,7 @@ TEST(DelaunayEditor, PointsNearTheCentreFallBackToFlips) {
 }
 
 TEST(DelaunayEditor, APointAtAVertexChangesNothing) {
-  Sample sample = test::random_sample(2, 5);
+  QuotientSample sample = test::random_sample(2, 5);
   QuotientTriangulation& mesh = sample.mesh();
   DelaunayEditor editor(mesh);
   for (const TriangleId t : test::live_triangles(mesh)) {

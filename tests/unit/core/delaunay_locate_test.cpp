@@ -7,7 +7,7 @@ namespace symcell {
 namespace {
 
 using test::Dice;
-using test::Sample;
+using test::QuotientSample;
 
 void insert_points(QuotientTriangulation& mesh, Dice& dice, int count) {
   DelaunayEditor editor(mesh);
@@ -24,7 +24,7 @@ void insert_points(QuotientTriangulation& mesh, Dice& dice, int count) {
 TEST(Locate, FindsTheTriangleInEverySector) {
   for (const std::int32_t fold : {3, 4, 7, 12, 31}) {
     Dice dice(static_cast<std::uint64_t>(fold));
-    Sample sample = test::wheel(fold, false);
+    QuotientSample sample = test::wheel(fold, false);
     const QuotientTriangulation& mesh = sample.mesh();
     insert_points(sample.mesh(), dice, 60);
     for (int i = 0; i < 300; ++i) {
@@ -44,7 +44,7 @@ TEST(Locate, WhatItFindsHoldsThePointOrBlocksTheWay) {
     for (std::uint64_t seed = 0; seed < 8; ++seed) {
       SCOPED_TRACE("fold " + std::to_string(fold) + " seed " + std::to_string(seed));
       Dice dice(seed);
-      Sample sample = test::random_sample(seed, fold);
+      QuotientSample sample = test::random_sample(seed, fold);
       const QuotientTriangulation& mesh = sample.mesh();
       insert_points(sample.mesh(), dice, 20);
       int inside = 0;

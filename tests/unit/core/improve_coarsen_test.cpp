@@ -10,7 +10,7 @@ TEST(Coarsener, FewerTrianglesAndNoneBad) {
   for (const std::int32_t fold : {1, 2, 5, 12, 36}) {
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
       SCOPED_TRACE("fold " + std::to_string(fold) + " seed " + std::to_string(seed));
-      test::Sample sample = test::random_sample(seed, fold);
+      test::QuotientSample sample = test::random_sample(seed, fold);
       QuotientTriangulation& mesh = sample.mesh();
       MeshOptions options;
       options.min_angle_deg = 25;
@@ -41,7 +41,7 @@ TEST(Coarsener, FewerTrianglesAndNoneBad) {
 }
 
 TEST(Coarsener, StopsWhenCancelled) {
-  test::Sample sample = test::random_sample(1, 3);
+  test::QuotientSample sample = test::random_sample(1, 3);
   MeshOptions options;
   Criteria criteria(sample.mesh(), sample.start.subdomains, options);
   DelaunayEditor editor(sample.mesh());

@@ -15,14 +15,14 @@
 
 namespace symcell::test {
 
-struct Sample {
+struct QuotientSample {
   SymmetricPslg pslg;
   InitialTriangulation start;
   [[nodiscard]] QuotientTriangulation& mesh() { return start.mesh; }
 };
 
 // Requires: a valid model; fails the test and throws otherwise.
-inline Sample triangulated(const Pslg& model, std::int32_t fold) {
+inline QuotientSample triangulated(const Pslg& model, std::int32_t fold) {
   ExecutionContext context;
   MeshOptions options;
   options.fold = fold;
@@ -33,12 +33,12 @@ inline Sample triangulated(const Pslg& model, std::int32_t fold) {
   return {std::move(symmetric.value()), std::move(start.value())};
 }
 
-inline Sample random_sample(std::uint64_t seed, std::int32_t fold) {
+inline QuotientSample random_sample(std::uint64_t seed, std::int32_t fold) {
   return triangulated(random_symmetric_pslg(seed, fold, nullptr), fold);
 }
 
 // A polygon of `fold` sides about its centre: one triangle (o, a, Ra) with `spokes` on its sides.
-inline Sample wheel(std::int32_t fold, bool spokes) {
+inline QuotientSample wheel(std::int32_t fold, bool spokes) {
   SectorBuilder builder(fold);
   const auto rim = builder.add_vertex({1, 0});
   builder.add_loop({rim}, 1);
@@ -48,7 +48,7 @@ inline Sample wheel(std::int32_t fold, bool spokes) {
 }
 
 // Several small squares off the centre, one a sector: the pieces do not wrap round it.
-inline Sample pads(std::int32_t fold) {
+inline QuotientSample pads(std::int32_t fold) {
   SectorBuilder builder(fold);
   const double side = 1.0 / fold;
   const auto a = builder.add_vertex({1, -side}), b = builder.add_vertex({1 + side, -side}),

@@ -6,11 +6,11 @@
 namespace symcell {
 namespace {
 
-using test::Sample;
+using test::QuotientSample;
 
 constexpr double kRadian = std::numbers::pi / 180;
 
-Criteria criteria_of(const Sample& sample, const MeshOptions& options) {
+Criteria criteria_of(const QuotientSample& sample, const MeshOptions& options) {
   return Criteria(sample.start.mesh, sample.start.subdomains, options);
 }
 
@@ -26,7 +26,7 @@ Assessment assess_isosceles(const Criteria& criteria, double base_deg) {
 }
 
 TEST(Criteria, AnglesAreJudgedAtTheBound) {
-  const Sample sample = test::wheel(6, false);
+  const QuotientSample sample = test::wheel(6, false);
   const Criteria criteria = criteria_of(sample, with_angle(30));
   EXPECT_EQ(assess_isosceles(criteria, 30.001).verdict, Verdict::kGood);
   EXPECT_EQ(assess_isosceles(criteria, 29.999).verdict, Verdict::kAngle);
@@ -39,7 +39,7 @@ TEST(Criteria, AnglesAreJudgedAtTheBound) {
 }
 
 TEST(Criteria, SizesAreJudgedAtTheBound) {
-  const Sample sample = test::wheel(6, false);
+  const QuotientSample sample = test::wheel(6, false);
   MeshOptions options = with_angle(20);
   options.max_area = std::sqrt(3.0) / 4 * 1.001;
   EXPECT_EQ(assess_isosceles(criteria_of(sample, options), 60).verdict, Verdict::kGood);
@@ -53,7 +53,7 @@ TEST(Criteria, SizesAreJudgedAtTheBound) {
 }
 
 TEST(Criteria, TheLensIsWhereTheSegmentIsSeenUnderAWideAngle) {
-  const Sample sample = test::wheel(6, false);
+  const QuotientSample sample = test::wheel(6, false);
   test::Dice dice(1);
   for (const double bound : {20.0, 30.0, 38.0}) {
     const Criteria criteria = criteria_of(sample, with_angle(bound));
@@ -70,7 +70,7 @@ TEST(Criteria, TheLensIsWhereTheSegmentIsSeenUnderAWideAngle) {
 TEST(Criteria, TipsOfAStarAreExempt) {
   // Tips of 12 degrees.
   const double tip = 10, notch = tip * std::sin(6 * kRadian) / std::sin((180 - 6 - 36) * kRadian);
-  const Sample sample = test::triangulated(star(5, tip, notch), 5);
+  const QuotientSample sample = test::triangulated(star(5, tip, notch), 5);
   const QuotientTriangulation& mesh = sample.start.mesh;
   const Criteria criteria = criteria_of(sample, with_angle(30));
   int exempt = 0;
@@ -91,7 +91,7 @@ TEST(Criteria, TipsOfAStarAreExempt) {
 
 TEST(Criteria, TheCentreIsExemptOnlyWhereTheFoldForbidsTheBound) {
   const auto exemption = [](std::int32_t fold, bool spokes, double bound) {
-    const Sample sample = test::wheel(fold, spokes);
+    const QuotientSample sample = test::wheel(fold, spokes);
     const QuotientTriangulation& mesh = sample.start.mesh;
     const Criteria criteria = criteria_of(sample, with_angle(bound));
     const TriangleId t = test::live_triangles(mesh).front();
@@ -106,7 +106,7 @@ TEST(Criteria, TheCentreIsExemptOnlyWhereTheFoldForbidsTheBound) {
 // Sectors of exactly the bound can be met, and must not be refined without end.
 TEST(Criteria, SectorsOfExactlyTheBoundAreGood) {
   for (const auto& [fold, bound] : {std::pair{12, 30.0}, {18, 20.0}, {10, 36.0}, {9, 40.0}}) {
-    const Sample sample = test::wheel(fold, false);
+    const QuotientSample sample = test::wheel(fold, false);
     const Criteria criteria = criteria_of(sample, with_angle(bound));
     const QuotientTriangulation& mesh = sample.start.mesh;
     EXPECT_FALSE(criteria.is_bad(mesh, test::live_triangles(mesh).front()))

@@ -6,7 +6,7 @@
 namespace symcell {
 namespace {
 
-using test::Sample;
+using test::QuotientSample;
 
 // A refined mesh with the tools that worked on it.
 class Workshop {
@@ -51,7 +51,7 @@ class Workshop {
   }
 
   ExecutionContext context_;
-  Sample sample_;
+  QuotientSample sample_;
   MeshOptions options_;
   Criteria criteria_;
   DelaunayEditor editor_;

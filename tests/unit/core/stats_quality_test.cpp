@@ -9,7 +9,7 @@
 namespace symcell {
 namespace {
 
-SymmetryCellMesh cell_of(const test::Sample& sample) {
+SymmetryCellMesh cell_of(const test::QuotientSample& sample) {
   const auto cut = cut_cell(sample.start.mesh);
   EXPECT_TRUE(cut) << cut.error().message;
   return build_cell_mesh(sample.start, cut.value(), sample.pslg);

@@ -10,7 +10,7 @@ namespace symcell {
 namespace {
 
 using test::Dice;
-using test::Sample;
+using test::QuotientSample;
 
 // Triangles as cycles of corners, each turned to begin with its smallest, in the frame where that
 // has exponent 0: what two meshes with other slots and gauges have in common.
@@ -60,7 +60,7 @@ TEST(QuotientTriangulation, InitialMeshesAreValid) {
 // edges.
 TEST(QuotientTriangulation, FlipOfTrianglesThatShareTwoEdges) {
   for (const std::int32_t fold : {3, 4, 6, 7, 12}) {
-    Sample ring = test::triangulated(regular_ring(fold, 2, 1.2), fold);
+    QuotientSample ring = test::triangulated(regular_ring(fold, 2, 1.2), fold);
     QuotientTriangulation& mesh = ring.mesh();
     ASSERT_EQ(mesh.triangle_count(), 2U);
     const auto before = cycles(mesh);
@@ -90,7 +90,7 @@ TEST(QuotientTriangulation, FlipOfTrianglesThatShareTwoEdges) {
 
 TEST(QuotientTriangulation, FlippingTwiceRestoresTheTriangles) {
   for (const std::int32_t fold : {1, 2, 5, 8}) {
-    Sample sample = test::random_sample(3, fold);
+    QuotientSample sample = test::random_sample(3, fold);
     QuotientTriangulation& mesh = sample.mesh();
     insert_random_points(mesh, 7, 20);
     const auto before = cycles(mesh);
@@ -114,7 +114,7 @@ TEST(QuotientTriangulation, RollbackRestoresAndCommitKeeps) {
   for (const std::int32_t fold : {1, 2, 6, 17}) {
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
       SCOPED_TRACE("fold " + std::to_string(fold) + " seed " + std::to_string(seed));
-      Sample sample = test::random_sample(seed, fold);
+      QuotientSample sample = test::random_sample(seed, fold);
       QuotientTriangulation& mesh = sample.mesh();
       insert_random_points(mesh, seed, 10);
       const QuotientTriangulation before = mesh;
@@ -138,7 +138,7 @@ TEST(QuotientTriangulation, RollbackRestoresAndCommitKeeps) {
 }
 
 TEST(QuotientTriangulation, CompactKeepsTheTriangles) {
-  Sample sample = test::random_sample(5, 6);
+  QuotientSample sample = test::random_sample(5, 6);
   QuotientTriangulation& mesh = sample.mesh();
   insert_random_points(mesh, 1, 60);
   const auto before = cycles(mesh);
@@ -152,7 +152,7 @@ TEST(QuotientTriangulation, CompactKeepsTheTriangles) {
 
 TEST(Star, WalksVisitEveryCornerOnceInOrder) {
   for (const std::int32_t fold : {1, 2, 3, 5, 12}) {
-    Sample sample = test::random_sample(11, fold);
+    QuotientSample sample = test::random_sample(11, fold);
     QuotientTriangulation& mesh = sample.mesh();
     insert_random_points(mesh, 3, 30);
     std::set<HalfEdge> seen;
