@@ -1,0 +1,135 @@
+// The random solids of stacked prisms are what they tell: valid, of their volume and topology, and
+// symmetric.
+#include "tests/support/random_layers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "core/model/validate_plc.hpp"
+#include "core/symmetry/symmetrise_solid.hpp"
+#include "tests/support/sector_grid.hpp"
+
+namespace symcell {
+namespace {
+
+using test::make_random_layers;
+
+TEST(SectorGrid, CellsAreSeenFromTheirMiddlesAndEdgesLieBetween) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Random random(seed);
+    const auto grid = test::make_sector_grid(random, 1 + static_cast<std::int32_t>(seed % 12));
+    SCOPED_TRACE("seed " + std::to_string(seed) + ": " + grid.description);
+    const auto at = [](std::int32_t i) { return static_cast<std::size_t>(i); };
+    for (std::size_t c = 0; c < grid.cells.size(); ++c) {
+      const auto& corners = grid.cells[c].corners;
+      const Point2 middle = grid.middle(static_cast<std::int32_t>(c));
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const std::int32_t p = corners[i], q = corners[(i + 1) % corners.size()];
+        EXPECT_GT(cross(grid.points[at(p)] - middle, grid.points[at(q)] - middle), 0);
+        EXPECT_GE(grid.edge_between(p, q), 0);
+      }
+    }
+    std::map<std::int32_t, std::set<std::int32_t>> on_line;
+    for (const auto& e : grid.edges) {
+      const Point2 a = grid.points[at(e.a)], b = grid.points[at(e.b)];
+      EXPECT_TRUE(e.left >= 0 || e.right >= 0);
+      if (e.left >= 0) {
+        EXPECT_GT(cross(b - a, grid.middle(e.left) - a), 0);
+      }
+      if (e.right >= 0) {
+        EXPECT_LT(cross(b - a, grid.middle(e.right) - a), 0);
+      }
+      on_line[e.line].insert({e.a, e.b});
+    }
+    for (const auto& [line, points] : on_line) {
+      const Point2 a = grid.points[at(*points.begin())], b = grid.points[at(*points.rbegin())];
+      for (const std::int32_t p : points) {
+        EXPECT_LE(std::abs(cross(b - a, grid.points[at(p)] - a)), 1e-14);
+      }
+    }
+  }
+}
+
+// Of the faces between what is meshed and what is not.
+test::BoundaryTopology topology(const ValidPlc& valid) {
+  const auto at = [](std::int32_t i) { return static_cast<std::size_t>(i); };
+  std::set<std::pair<std::int32_t, std::int32_t>> edges;
+  std::map<std::int32_t, std::int32_t> piece;
+  test::BoundaryTopology result;
+  for (std::size_t f = 0; f < valid.complex.facets.size(); ++f) {
+    const auto& triangles = valid.complex.facets[f].triangles.triangles;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const auto [front, back] = valid.cells.sides[f][t];
+      if (valid.cells.cells[at(front)].meshed == valid.cells.cells[at(back)].meshed) continue;
+      ++result.euler;
+      for (std::size_t i = 0; i < 3; ++i) {
+        edges.insert(std::minmax(triangles[t][i], triangles[t][(i + 1) % 3]));
+        piece[triangles[t][i]] = triangles[t][i];
+      }
+    }
+  }
+  const auto root = [&](std::int32_t v) {
+    while (piece[v] != v) v = piece[v];
+    return v;
+  };
+  for (const auto& [a, b] : edges) piece[root(a)] = root(b);
+  for (const auto& [v, up] : piece) result.pieces += v == up ? 1 : 0;
+  result.euler += static_cast<std::int64_t>(piece.size()) - static_cast<std::int64_t>(edges.size());
+  return result;
+}
+
+TEST(RandomLayers, ModelsAreValidAndAsTold) {
+  std::map<std::string, int> seen;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const auto model = make_random_layers(seed);
+    SCOPED_TRACE("seed " + std::to_string(seed) + ": " + model.description);
+    ExecutionContext context;
+    const auto valid = validate_plc(model.plc, context);
+    if (!valid) {
+      ADD_FAILURE() << error_code_name(valid.error().code) << ": " << valid.error().message;
+      continue;
+    }
+    EXPECT_NEAR(valid->cells.volume, model.volume, 1e-9 * model.volume);
+    EXPECT_EQ(topology(*valid).pieces, model.boundary->pieces);
+    EXPECT_EQ(topology(*valid).euler, model.boundary->euler);
+    for (const char* word : {"pinched", "cavities", "divided", "arms", "thin", "fan", "bore",
+                             "tapered", "1-fold", "rectangles", "materials"}) {
+      if (model.description.find(word) != std::string::npos) ++seen[word];
+    }
+    for (const PlcFacet& f : model.plc.facets) {
+      if (f.holes.size() > 1) ++seen["facets with several holes"];
+      if (!f.holes.empty()) ++seen["facets with holes"];
+    }
+  }
+  for (const auto& [word, count] : seen) {
+    RecordProperty(word, count);
+    EXPECT_GE(count, 5) << word;
+  }
+  EXPECT_EQ(seen.size(), 13u);
+}
+
+TEST(RandomLayers, ModelsAreSymmetric) {
+  for (std::uint64_t seed = 0; seed < 150; ++seed) {
+    const auto model = make_random_layers(seed);
+    SCOPED_TRACE("seed " + std::to_string(seed) + ": " + model.description);
+    ExecutionContext context;
+    MeshOptions options;
+    options.fold = model.fold;
+    options.axis_origin = model.axis_origin;
+    options.axis_direction = model.axis_direction;
+    const auto source = symmetrise_plc(model.plc, options, context);
+    if (!source) {
+      ADD_FAILURE() << error_code_name(source.error().code) << ": " << source.error().message;
+      continue;
+    }
+    EXPECT_LE((*source)->symmetry().error_rel, 1e-10);
+  }
+}
+
+}  // namespace
+}  // namespace symcell
