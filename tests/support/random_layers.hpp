@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/base/random.hpp"
 #include "tests/support/random_plc.hpp"
 #include "tests/support/random_surface.hpp"
 
@@ -17,6 +18,9 @@ struct RandomLayersOptions {
   std::optional<std::int32_t> fold;  // nullopt: random, 1 among them
   bool pinches = true;               // of PLCs: a few models touch themselves in edges or corners
 };
+
+// 1 to 8 as a rule, more at times.
+[[nodiscard]] std::int32_t random_fold(Random& random, const RandomLayersOptions& options);
 
 // As facets: groups of faces by chance, some of the corners on straight outlines left out.
 [[nodiscard]] RandomPlc make_random_layers(std::uint64_t seed,

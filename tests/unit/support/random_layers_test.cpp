@@ -5,12 +5,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "core/model/validate_plc.hpp"
+#include "core/surface/indexed_surface.hpp"
+#include "core/surface/self_intersections.hpp"
 #include "core/symmetry/symmetrise_solid.hpp"
 #include "tests/support/sector_grid.hpp"
 
@@ -129,6 +134,62 @@ TEST(RandomLayers, ModelsAreSymmetric) {
     }
     EXPECT_LE((*source)->symmetry().error_rel, 1e-10);
   }
+}
+
+// Triangles by their corners' places: what files say, whose triangles stand apart.
+IndexedSurface welded(const TriangleSurface& surface) {
+  IndexedSurface result;
+  std::map<std::array<double, 3>, std::int32_t> index;
+  for (Triangle t : surface.triangles) {
+    for (std::int32_t& v : t) {
+      const Point3 p = surface.vertices[static_cast<std::size_t>(v)];
+      const auto [place, fresh] =
+          index.try_emplace({p.x, p.y, p.z}, static_cast<std::int32_t>(result.points.size()));
+      if (fresh) result.points.push_back(p);
+      v = place->second;
+    }
+    result.triangles.push_back(t);
+  }
+  return result;
+}
+
+TEST(RandomLayers, SurfacesAreClosedAndAsTold) {
+  std::size_t several = 0, handles = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const auto model = test::make_random_layer_surface(seed);
+    SCOPED_TRACE("seed " + std::to_string(seed) + ": " + model.description);
+    const IndexedSurface s = welded(model.surface);
+    const auto uses = sorted_edge_uses(s.triangles);
+    std::int64_t edges = 0;
+    std::vector<std::int32_t> piece(s.points.size());
+    std::iota(piece.begin(), piece.end(), 0);
+    const auto root = [&](std::int32_t v) {
+      while (piece[static_cast<std::size_t>(v)] != v) v = piece[static_cast<std::size_t>(v)];
+      return v;
+    };
+    for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
+      ++edges;
+      EXPECT_EQ(end - begin, 2u);
+      EXPECT_NE(uses[begin].forward, uses[end - 1].forward);
+      piece[static_cast<std::size_t>(root(uses[begin].low))] = root(uses[begin].high);
+    });
+    test::BoundaryTopology found;
+    found.euler = static_cast<std::int64_t>(s.points.size() + s.triangles.size()) - edges;
+    for (std::size_t v = 0; v < piece.size(); ++v) {
+      found.pieces += piece[v] == static_cast<std::int32_t>(v) ? 1 : 0;
+    }
+    EXPECT_EQ(found.pieces, model.boundary->pieces);
+    EXPECT_EQ(found.euler, model.boundary->euler);
+    EXPECT_NEAR(enclosed_volume(s, s.points.front()), model.volume, 1e-9 * model.volume);
+    ExecutionContext context;
+    const auto crossing = self_intersections(s, 1, context);
+    ASSERT_TRUE(crossing);
+    EXPECT_TRUE(crossing->empty());
+    several += found.pieces > 1 ? 1 : 0;
+    handles += found.euler < 2 ? 1 : 0;
+  }
+  EXPECT_GE(several, 20u);
+  EXPECT_GE(handles, 50u);
 }
 
 }  // namespace
