@@ -1,11 +1,15 @@
-// What a generator of models tells of the topology of the boundary: laws hold meshes against it.
+// The topology of a model's boundary, as generators tell it and as models show it: laws hold meshes
+// against it.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/geometry/point.hpp"
+#include "core/model/triangle_surface.hpp"
+#include "core/model/validate_plc.hpp"
 
 namespace symcell::test {
 
@@ -21,5 +25,13 @@ struct BoundaryTopology {
   std::int64_t euler = 0;   // vertices - edges + faces
   friend bool operator==(const BoundaryTopology&, const BoundaryTopology&) = default;
 };
+
+// Of triangles that meet in whole edges and corners; vertices on none do not count.
+[[nodiscard]] BoundaryTopology boundary_topology(
+    std::span<const std::array<std::int64_t, 3>> triangles);
+// Vertices at one place are one.
+[[nodiscard]] BoundaryTopology boundary_topology(const TriangleSurface& surface);
+// Of what is meshed.
+[[nodiscard]] BoundaryTopology boundary_topology(const ValidPlc& valid);
 
 }  // namespace symcell::test

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -60,34 +59,6 @@ TEST(SectorGrid, CellsAreSeenFromTheirMiddlesAndEdgesLieBetween) {
   }
 }
 
-// Of the faces between what is meshed and what is not.
-test::BoundaryTopology topology(const ValidPlc& valid) {
-  const auto at = [](std::int32_t i) { return static_cast<std::size_t>(i); };
-  std::set<std::pair<std::int32_t, std::int32_t>> edges;
-  std::map<std::int32_t, std::int32_t> piece;
-  test::BoundaryTopology result;
-  for (std::size_t f = 0; f < valid.complex.facets.size(); ++f) {
-    const auto& triangles = valid.complex.facets[f].triangles.triangles;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      const auto [front, back] = valid.cells.sides[f][t];
-      if (valid.cells.cells[at(front)].meshed == valid.cells.cells[at(back)].meshed) continue;
-      ++result.euler;
-      for (std::size_t i = 0; i < 3; ++i) {
-        edges.insert(std::minmax(triangles[t][i], triangles[t][(i + 1) % 3]));
-        piece[triangles[t][i]] = triangles[t][i];
-      }
-    }
-  }
-  const auto root = [&](std::int32_t v) {
-    while (piece[v] != v) v = piece[v];
-    return v;
-  };
-  for (const auto& [a, b] : edges) piece[root(a)] = root(b);
-  for (const auto& [v, up] : piece) result.pieces += v == up ? 1 : 0;
-  result.euler += static_cast<std::int64_t>(piece.size()) - static_cast<std::int64_t>(edges.size());
-  return result;
-}
-
 TEST(RandomLayers, ModelsAreValidAndAsTold) {
   std::map<std::string, int> seen;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
@@ -100,8 +71,9 @@ TEST(RandomLayers, ModelsAreValidAndAsTold) {
       continue;
     }
     EXPECT_NEAR(valid->cells.volume, model.volume, 1e-9 * model.volume);
-    EXPECT_EQ(topology(*valid).pieces, model.boundary->pieces);
-    EXPECT_EQ(topology(*valid).euler, model.boundary->euler);
+    const auto topology = test::boundary_topology(*valid);
+    EXPECT_EQ(topology.pieces, model.boundary->pieces);
+    EXPECT_EQ(topology.euler, model.boundary->euler);
     for (const char* word : {"pinched", "cavities", "divided", "arms", "thin", "fan", "bore",
                              "tapered", "1-fold", "rectangles", "materials"}) {
       if (model.description.find(word) != std::string::npos) ++seen[word];
@@ -160,24 +132,11 @@ TEST(RandomLayers, SurfacesAreClosedAndAsTold) {
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + model.description);
     const IndexedSurface s = welded(model.surface);
     const auto uses = sorted_edge_uses(s.triangles);
-    std::int64_t edges = 0;
-    std::vector<std::int32_t> piece(s.points.size());
-    std::iota(piece.begin(), piece.end(), 0);
-    const auto root = [&](std::int32_t v) {
-      while (piece[static_cast<std::size_t>(v)] != v) v = piece[static_cast<std::size_t>(v)];
-      return v;
-    };
     for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
-      ++edges;
       EXPECT_EQ(end - begin, 2u);
       EXPECT_NE(uses[begin].forward, uses[end - 1].forward);
-      piece[static_cast<std::size_t>(root(uses[begin].low))] = root(uses[begin].high);
     });
-    test::BoundaryTopology found;
-    found.euler = static_cast<std::int64_t>(s.points.size() + s.triangles.size()) - edges;
-    for (std::size_t v = 0; v < piece.size(); ++v) {
-      found.pieces += piece[v] == static_cast<std::int32_t>(v) ? 1 : 0;
-    }
+    const auto found = test::boundary_topology(model.surface);
     EXPECT_EQ(found.pieces, model.boundary->pieces);
     EXPECT_EQ(found.euler, model.boundary->euler);
     EXPECT_NEAR(enclosed_volume(s, s.points.front()), model.volume, 1e-9 * model.volume);
