@@ -38,6 +38,7 @@ class SurfaceMaker {
     for (const auto& [outline, sheet] : outlines_) add_facet(outline, *sheet, flipped);
     const bool soup = chance(0.3);
     write(soup);
+    made_.flat = true;
     made_.boundary = boundary_topology(cells_);
     made_.description = std::to_string(made_.fold) +
                         "-fold layers as triangles: " + cells_.description + ", " +

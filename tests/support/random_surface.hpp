@@ -18,6 +18,7 @@ struct RandomSurface {
   std::int32_t fold = 1;  // of the shape; the tessellation keeps it to within its chords only
   double volume = 0;      // of the tessellation
   double area = 0;
+  bool flat = false;  // of few planes: the tessellation keeps the symmetry exactly
   std::optional<BoundaryTopology> boundary;  // where the generator tells it
 };
 
