@@ -7,13 +7,17 @@
 
 namespace symcell::test {
 
-BoundaryTopology boundary_topology(std::span<const std::array<std::int64_t, 3>> triangles) {
+namespace {
+
+// Of simplices that meet in whole edges and corners.
+template <std::size_t N>
+BoundaryTopology topology_of(std::span<const std::array<std::int64_t, N>> simplices) {
   std::set<std::pair<std::int64_t, std::int64_t>> edges;
   std::map<std::int64_t, std::int64_t> up;  // per vertex: another of its piece
-  for (const auto& t : triangles) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      edges.insert(std::minmax({t[i], t[(i + 1) % 3]}));
-      up[t[i]] = t[i];
+  for (const auto& s : simplices) {
+    for (std::size_t i = 0; i < N; ++i) {
+      edges.insert(std::minmax({s[i], s[(i + 1) % N]}));
+      up[s[i]] = s[i];
     }
   }
   const auto root = [&](std::int64_t v) {
@@ -23,9 +27,20 @@ BoundaryTopology boundary_topology(std::span<const std::array<std::int64_t, 3>> 
   for (const auto& [a, b] : edges) up[root(a)] = root(b);
   BoundaryTopology result;
   for (const auto& [v, other] : up) result.pieces += v == other ? 1 : 0;
-  result.euler = static_cast<std::int64_t>(up.size() + triangles.size()) -
-                 static_cast<std::int64_t>(edges.size());
+  const std::size_t faces = N == 3 ? simplices.size() : 0;
+  result.euler =
+      static_cast<std::int64_t>(up.size() + faces) - static_cast<std::int64_t>(edges.size());
   return result;
+}
+
+}  // namespace
+
+BoundaryTopology boundary_topology(std::span<const std::array<std::int64_t, 3>> triangles) {
+  return topology_of(triangles);
+}
+
+BoundaryTopology boundary_topology(std::span<const std::array<std::int64_t, 2>> segments) {
+  return topology_of(segments);
 }
 
 BoundaryTopology boundary_topology(const TriangleSurface& surface) {

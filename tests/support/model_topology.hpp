@@ -29,6 +29,9 @@ struct BoundaryTopology {
 // Of triangles that meet in whole edges and corners; vertices on none do not count.
 [[nodiscard]] BoundaryTopology boundary_topology(
     std::span<const std::array<std::int64_t, 3>> triangles);
+// Of segments: vertices - edges.
+[[nodiscard]] BoundaryTopology boundary_topology(
+    std::span<const std::array<std::int64_t, 2>> segments);
 // Vertices at one place are one.
 [[nodiscard]] BoundaryTopology boundary_topology(const TriangleSurface& surface);
 // Of what is meshed.
