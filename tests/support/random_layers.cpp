@@ -24,7 +24,7 @@ class PlcMaker {
   PlcMaker(std::uint64_t seed, const RandomLayersOptions& options) : random_(seed ^ 0x1a7e25u) {
     made_.fold = random_fold(random_, options);
     LayeredOptions layered;
-    layered.pinches = options.pinches && chance(0.1);
+    layered.pinches = chance(0.1) && options.pinches;
     cells_ = make_layered_cells(random_, made_.fold, layered);
   }
 
