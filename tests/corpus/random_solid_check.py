@@ -1,10 +1,11 @@
 """Random solids through the real binary and the independent checker beside the tree.
 
-random_solid_check.py --symcell PROGRAM --writer PROGRAM [--kind bodies|layers|surfaces]
+random_solid_check.py --symcell PROGRAM --writer PROGRAM [--kind KIND]
                       [--first SEED] [--count N] [--jobs N]
 
-Kinds: bodies (prisms, frustums, blocks, ...) and layers (stacks of prisms: tabs, ribs, pockets,
-islands, partitions) as facets, PLC JSON; surfaces, the layers as triangles, STL.
+Kinds: bodies (prisms, frustums, blocks, ...), layers (stacks of prisms: ribs, pockets, islands,
+partitions) and tabs (bodies with tabs and pockets on their sides) as facets, PLC JSON; surfaces and
+tab_surfaces, layers and tabs as triangles, STL.
 
 The checker excuses from the radius-edge bound what touches a small angle of the input only; a mesh
 that has others and says so in its statistics (near_small_feature) is told, and holds.
@@ -17,7 +18,7 @@ import sys
 import random_runs
 from random_runs import FAILED, INVALID, VALID, Outcome
 
-KINDS = ("bodies", "layers", "surfaces")
+KINDS = ("bodies", "layers", "tabs", "surfaces", "tab_surfaces")
 # Volume of the model over the number: bounds on the volume of elements.
 SHARES = (None, 300, 2000)
 RADIUS_EDGE = 1.414
@@ -33,7 +34,7 @@ def main():
 
     def check(seed, base, folder):
         fold, volume, _ = base.with_suffix(".txt").read_text().split(" ", 2)
-        surface = options.kind == "surfaces"
+        surface = options.kind.endswith("surfaces")
         model, share = base.with_suffix(".stl" if surface else ".json"), SHARES[seed % len(SHARES)]
         cell, full, stats = (folder / name for name in ("cell.vtu", "full.vtu", "stats.json"))
         mesh = [options.symcell, "mesh", model, "--cell", cell, "--full", full, "--stats", stats,

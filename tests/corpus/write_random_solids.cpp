@@ -1,6 +1,7 @@
 // write_random_solids DIRECTORY KIND FIRST COUNT: random solids as files, random_SEED.json (PLC) or
 // .stl, each with its fold, volume and description in a companion (.txt), for checks by programs
-// that share no code with the mesher. Kinds: bodies, layers, surfaces.
+// that share no code with the mesher. Kinds: bodies, layers and
+// tabs, and these as triangles: surfaces, tab_surfaces.
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -43,10 +44,14 @@ int run(const std::string& directory,
         std::uint64_t first,
         std::uint64_t count) {
   test::RandomLayersOptions options;
-  options.pinches = false;  // the checker knows those of planar models only
+  // What the checker cannot judge in solids.
+  options.pinches = false;
+  options.loose = false;
+  options.touching = false;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     const std::string base = directory + "/random_" + std::to_string(seed);
-    if (kind == "surfaces") {
+    options.tabs = kind.starts_with("tab");
+    if (kind == "surfaces" || kind == "tab_surfaces") {
       const test::RandomSurface model = test::make_random_layer_surface(seed, options);
       test::write_file(base + ".stl", ascii_stl(model.surface));
       write_companion(base, model.fold, model.volume, model.description);
@@ -69,7 +74,7 @@ int main(int argc, char** argv) {
                                : symcell::run(argv[1], argv[2], std::strtoull(argv[3], nullptr, 10),
                                               std::strtoull(argv[4], nullptr, 10));
   if (status == 2) {
-    std::fputs("usage: write_random_solids DIRECTORY bodies|layers|surfaces FIRST COUNT\n", stderr);
+    std::fputs("usage: write_random_solids DIRECTORY KIND FIRST COUNT\n", stderr);
   }
   return status;
 }

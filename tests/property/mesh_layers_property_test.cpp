@@ -13,8 +13,10 @@
 namespace symcell {
 namespace {
 
-void expect_all_laws(std::uint64_t seed) {
-  const SolidCase c = make_solid_case(seed, test::make_random_layers(seed));
+void expect_all_laws(std::uint64_t seed, bool tabs) {
+  test::RandomLayersOptions options;
+  options.tabs = tabs;
+  const SolidCase c = make_solid_case(seed, test::make_random_layers(seed, options));
   const auto outcome = mesh(c);
   if (!outcome) {
     ADD_FAILURE() << c << "\n"
@@ -29,7 +31,13 @@ void expect_all_laws(std::uint64_t seed) {
 
 TEST(MeshLayersProperty, MeshesKeepAllLaws) {
   const SeedRange seeds = property_seeds(40);
-  for (std::uint64_t seed = seeds.begin; seed < seeds.end; ++seed) expect_all_laws(seed);
+  for (std::uint64_t seed = seeds.begin; seed < seeds.end; ++seed) expect_all_laws(seed, false);
+}
+
+// The faces that tabs and pockets stand in have holes, with material beyond them.
+TEST(MeshLayersProperty, TabsAndPocketsKeepAllLaws) {
+  const SeedRange seeds = property_seeds(25);
+  for (std::uint64_t seed = seeds.begin; seed < seeds.end; ++seed) expect_all_laws(seed, true);
 }
 
 }  // namespace

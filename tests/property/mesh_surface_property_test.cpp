@@ -40,11 +40,12 @@ TEST(MeshSurfaceProperty, MeshesOrErrorsThatTell) {
   EXPECT_LE(failed, 1 + meshed / 20);
 }
 
-// Walls, floors and ceilings are exactly symmetric, however their triangles lie: all can be meshed.
-TEST(MeshSurfaceProperty, LayersKeepAllLaws) {
-  const SeedRange seeds = property_seeds(20);
+void expect_all_layers_lawful(std::uint64_t usual, bool tabs) {
+  test::RandomLayersOptions options;
+  options.tabs = tabs;
+  const SeedRange seeds = property_seeds(usual);
   for (std::uint64_t seed = seeds.begin; seed < seeds.end; ++seed) {
-    const SurfaceCase c = make_surface_case(seed, test::make_random_layer_surface(seed));
+    const SurfaceCase c = make_surface_case(seed, test::make_random_layer_surface(seed, options));
     const auto outcome = mesh(c);
     if (outcome) {
       expect_lawful(c, *outcome);
@@ -53,6 +54,15 @@ TEST(MeshSurfaceProperty, LayersKeepAllLaws) {
     ADD_FAILURE() << c << "\n"
                   << error_code_name(outcome.error().code) << ": " << outcome.error().message;
   }
+}
+
+// Walls, floors and ceilings are exactly symmetric, however their triangles lie: all can be meshed.
+TEST(MeshSurfaceProperty, LayersKeepAllLaws) {
+  expect_all_layers_lawful(20, false);
+}
+
+TEST(MeshSurfaceProperty, TabsAndPocketsKeepAllLaws) {
+  expect_all_layers_lawful(15, true);
 }
 
 }  // namespace

@@ -107,15 +107,19 @@ class Filler {
  public:
   Filler(Random& random, std::int32_t fold, const LayeredOptions& options)
       : random_(random), options_(options) {
-    made_.grid = make_sector_grid(random, fold);
+    made_.grid = make_sector_grid(random, fold, options.tabs);
   }
 
   LayeredCells run() {
     add_levels();
     made_.fill.assign(at(made_.layers()) * made_.grid.cells.size(), 0);
-    start();
+    if (options_.tabs) {
+      tabs();
+    } else {
+      start();
+    }
     std::int32_t cuts = 0, adds = 0;
-    for (std::int32_t i = any(1, 5); i > 0; --i) {
+    for (std::int32_t i = options_.tabs ? any(0, 1) : any(1, 5); i > 0; --i) {
       const bool cut = chance(0.5);
       ++(cut ? cuts : adds);
       box(cut ? 0 : any(1, kinds_));
@@ -139,7 +143,7 @@ class Filler {
   }
 
   void add_levels() {
-    const std::int32_t layers = any(1, options_.layers);
+    const std::int32_t layers = any(options_.tabs ? 2 : 1, options_.layers);
     const bool thin = chance(0.25);
     made_.heights = {0};
     for (std::int32_t i = 0; i < layers; ++i) {
@@ -162,6 +166,29 @@ class Filler {
       for (std::int32_t orbit = 0; orbit < made_.grid.cell_orbits; ++orbit) {
         const std::int32_t fill = chance(share) ? any(1, kinds_) : 0;
         set(layer, fill, [&](const GridCell& c) { return c.orbit == orbit && c.u <= rim; });
+      }
+    }
+  }
+
+  // A full body; tabs grow out of some of its sides, pockets go into some, mostly away from the
+  // bottom and the top.
+  void tabs() {
+    start_ = "tabs";
+    const bool apart = made_.layers() > 2 && chance(0.8);
+    const double tabbed = between(0.1, 0.5), pocketed = chance(0.4) ? between(0, 0.3) : 0;
+    for (std::int32_t layer = 0; layer < made_.layers(); ++layer) {
+      set(layer, any(1, kinds_), [](const GridCell& c) { return !c.outer; });
+      if (apart && (layer == 0 || layer + 1 == made_.layers())) continue;
+      std::vector<std::int32_t> reach;  // of the tab in every column or place
+      for (std::int32_t i = 0; i < std::max(made_.grid.cell_orbits, made_.grid.columns); ++i) {
+        reach.push_back(chance(tabbed) ? any(1, made_.grid.rings) : -1);
+      }
+      set(layer, any(1, kinds_), [&](const GridCell& c) {
+        return c.outer && c.u <= reach[at(made_.grid.arms ? c.v : c.orbit)];
+      });
+      for (std::int32_t orbit = 0; orbit < made_.grid.cell_orbits; ++orbit) {
+        if (!chance(pocketed)) continue;
+        set(layer, 0, [&](const GridCell& c) { return c.orbit == orbit && !c.outer; });
       }
     }
   }

@@ -34,6 +34,7 @@ struct LayeredOptions {
   std::int32_t layers = 4;  // at most
   std::int32_t kinds = 3;   // of material, at most
   bool pinches = false;     // may be left; else what pinches is filled or emptied
+  bool tabs = false;        // a body with tabs on its sides and pockets in them
 };
 
 [[nodiscard]] LayeredCells make_layered_cells(Random& random,

@@ -28,6 +28,8 @@ class SurfaceMaker {
       : random_(seed ^ 0x5027faceu) {
     made_.fold = random_fold(random_, options);
     LayeredOptions layered;
+    layered.tabs = options.tabs;
+    if (options.tabs) layered.layers = 5;
     layered.kinds = 1;
     cells_ = make_layered_cells(random_, made_.fold, layered);
   }

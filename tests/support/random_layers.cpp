@@ -21,9 +21,12 @@ std::size_t at(std::int32_t i) {
 
 class PlcMaker {
  public:
-  PlcMaker(std::uint64_t seed, const RandomLayersOptions& options) : random_(seed ^ 0x1a7e25u) {
+  PlcMaker(std::uint64_t seed, const RandomLayersOptions& options)
+      : random_(seed ^ 0x1a7e25u), options_(options) {
     made_.fold = random_fold(random_, options);
     LayeredOptions layered;
+    layered.tabs = options.tabs;
+    if (options.tabs) layered.layers = 5;
     layered.pinches = chance(0.1) && options.pinches;
     cells_ = make_layered_cells(random_, made_.fold, layered);
   }
@@ -47,12 +50,12 @@ class PlcMaker {
 
   void choose_facets() {
     const double partitions = chance(0.3) ? 0.15 : 0;
-    const Coin partition(random_, partitions);
+    const Coin partition(random_, options_.loose ? partitions : 0);
     const std::int32_t markers = static_cast<std::int32_t>(random_.next() % 3);
     const Coin marker(random_, 0);
     constexpr double kMerges[] = {1, 0.7, 0};
     const Coin merges(random_, kMerges[random_.next() % 3]);
-    const Coin seam(random_, chance(0.2) ? 0.3 : 0);
+    const Coin seam(random_, chance(0.2) && options_.loose ? 0.3 : 0);
     sheets_ = make_sheets(cells_);
     for (const Sheet& sheet : sheets_) {
       std::vector<char> wanted;
@@ -143,7 +146,7 @@ class PlcMaker {
         for (const OutlineCorner& c : loop) {
           bool keep = needed[at(c.vertex)] != 0 ? !c.straight || chance(listed)
                                                 : stays(vertex_orbit(c.vertex));
-          if (times[c.vertex] > 1) keep = true;
+          if (times[c.vertex] > 1 || (needed[at(c.vertex)] != 0 && !options_.touching)) keep = true;
           if (keep) polygon.push_back(use(c.vertex));
         }
         facet.polygons.push_back(std::move(polygon));
@@ -250,6 +253,7 @@ class PlcMaker {
   }
 
   Random random_;
+  const RandomLayersOptions& options_;
   RandomPlc made_;
   LayeredCells cells_;
   std::vector<Sheet> sheets_;
@@ -263,7 +267,7 @@ class PlcMaker {
 std::int32_t random_fold(Random& random, const RandomLayersOptions& options) {
   if (options.fold) return *options.fold;
   const double pick = random.uniform();
-  const double most = pick < 0.15 ? 1 : pick < 0.85 ? 8 : options.max_fold;
+  const double most = pick < 0.15 ? 1 : pick < 0.85 ? 8 : options.tabs ? 12 : options.max_fold;
   return 1 + static_cast<std::int32_t>(random.uniform() * std::min<double>(most, options.max_fold));
 }
 

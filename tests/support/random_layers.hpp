@@ -17,6 +17,9 @@ struct RandomLayersOptions {
   std::int32_t max_fold = 24;
   std::optional<std::int32_t> fold;  // nullopt: random, 1 among them
   bool pinches = true;               // of PLCs: a few models touch themselves in edges or corners
+  bool loose = true;                 // partitions and seams that may end anywhere within material
+  bool touching = true;              // edges that end inside others: corners not told twice
+  bool tabs = false;                 // bodies with tabs and pockets on their sides; folds up to 12
 };
 
 // 1 to 8 as a rule, more at times.

@@ -32,18 +32,15 @@ class GridBuilder {
   }
   // The image of a point under the first rotation; without a word: itself.
   void turn(std::int32_t point, std::int32_t image) { turned_[at(point)] = image; }
-  void cell(std::vector<std::int32_t> corners,
-            std::int32_t u,
-            std::int32_t v,
-            bool hollow = false) {
+  GridCell& cell(std::vector<std::int32_t> corners, std::int32_t u, std::int32_t v) {
     GridCell c;
     c.corners = std::move(corners);
     c.u = u;
     c.v = v;
-    c.hollow = hollow;
     grid_.rings = std::max(grid_.rings, u + 1);
     grid_.columns = std::max(grid_.columns, v + 1);
     grid_.cells.push_back(std::move(c));
+    return grid_.cells.back();
   }
   // The edge between two points lies on the line `key`.
   void line(std::int32_t a, std::int32_t b, std::int32_t key) { line_[std::minmax(a, b)] = key; }
@@ -125,11 +122,12 @@ class GridBuilder {
 
 class GridMaker {
  public:
-  GridMaker(Random& random, std::int32_t fold) : random_(random), n_(fold), builder_(fold) {}
+  GridMaker(Random& random, std::int32_t fold, bool tabs)
+      : random_(random), n_(fold), tabs_(tabs), builder_(fold) {}
 
   SectorGrid run() {
     const bool square = n_ == 1 || n_ == 2 || n_ == 4;
-    if (square && random_.uniform() < 0.5) {
+    if (square && (random_.uniform() < 0.5 || (tabs_ && n_ < 3))) {
       rectangles();
     } else {
       rings();
@@ -161,7 +159,8 @@ class GridMaker {
   // n = 1, 2 or 4.
   void rectangles() {
     const bool thin = chance(0.3);
-    const std::int32_t nx = any(2, 5), ny = n_ == 4 ? nx : any(2, 5);
+    const std::int32_t least = tabs_ ? 4 : 2, most = tabs_ ? 6 : 5;
+    const std::int32_t nx = any(least, most), ny = n_ == 4 ? nx : any(least, most);
     const std::vector<double> x = steps(nx, n_ > 1, thin);
     const std::vector<double> y = n_ == 4 ? x : steps(ny, n_ > 1, thin);
     const double height = n_ == 4 ? 1 : between(0.5, 1);
@@ -184,7 +183,11 @@ class GridMaker {
         if (i < nx) builder_.line(id(i, j), id(i + 1, j), j);
         if (j < ny) builder_.line(id(i, j), id(i, j + 1), ny + 1 + i);
         if (i < nx && j < ny) {
-          builder_.cell({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)}, i, j);
+          const bool by_x = i == 0 || i + 1 == nx, by_y = j == 0 || j + 1 == ny;
+          GridCell& c =
+              builder_.cell({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)}, i, j);
+          c.outer = by_x || by_y;
+          c.hollow = tabs_ && by_x && by_y;
         }
       }
     }
@@ -193,9 +196,14 @@ class GridMaker {
 
   // Rings about the axis; straight ones have all points of a sector on one side of a polygon.
   void rings() {
-    const bool straight = n_ >= 3 && chance(0.6);
+    const bool straight = n_ >= 3 && (chance(0.6) || tabs_);
     const bool thin = chance(0.3);
-    const std::int32_t least = straight ? 1 : n_ == 1 ? 5 : n_ == 2 ? 3 : n_ <= 4 ? 2 : 1;
+    const std::int32_t least = tabs_      ? 3
+                               : straight ? 1
+                               : n_ == 1  ? 5
+                               : n_ == 2  ? 3
+                               : n_ <= 4  ? 2
+                                          : 1;
     columns_ = any(least, std::max(least, n_ > 12 ? 2 : n_ > 6 ? 3 : 4));
     const std::int32_t count = any(1, 3);
     std::vector<double> column = steps(columns_, false, thin);
@@ -212,7 +220,7 @@ class GridMaker {
     const bool fan = columns_ * n_ <= 24 && chance(0.3);
     const bool bore = !fan && chance(0.5);
     fill_centre(fan, bore, uneven);
-    const bool arms = straight && n_ <= 12 && chance(0.6);
+    const bool arms = straight && n_ <= 12 && (chance(0.6) || tabs_);
     if (arms) add_arms(count, column, thin);
     std::string& text = builder_.grid().description;
     text = std::to_string(count) +
@@ -297,11 +305,12 @@ class GridMaker {
         if (!uneven) builder_.line(centre, id(0, j, s), key(0, j, s));
       }
     }
-    if (!fan) builder_.cell(rim, 0, -1, bore);
+    if (!fan) builder_.cell(rim, 0, -1).hollow = bore;
   }
 
   // Grids of rectangles on the sides of the outermost ring.
   void add_arms(std::int32_t outermost, const std::vector<double>& column, bool thin) {
+    builder_.grid().arms = true;
     const std::int32_t count = any(1, 3);
     const std::vector<double> reach = steps(count, false, thin);
     const double length = between(0.3, 2);
@@ -335,7 +344,7 @@ class GridMaker {
           if (j == columns_) continue;
           const std::int32_t next = arm[at(x)][at(j + 1)][at(s)];
           const std::int32_t across = arm[at(x + 1)][at(j + 1)][at(s)];
-          builder_.cell({low, high, across, next}, outermost + 1 + x, j);
+          builder_.cell({low, high, across, next}, outermost + 1 + x, j).outer = true;
           builder_.line(high, across, key(1, outermost + 1 + x, s));
         }
       }
@@ -344,6 +353,7 @@ class GridMaker {
 
   Random& random_;
   std::int32_t n_;
+  bool tabs_;
   std::int32_t columns_ = 0;
   GridBuilder builder_;
 };
@@ -372,8 +382,8 @@ std::int32_t SectorGrid::edge_between(std::int32_t a, std::int32_t b) const {
   return -1;
 }
 
-SectorGrid make_sector_grid(Random& random, std::int32_t fold) {
-  return GridMaker(random, fold).run();
+SectorGrid make_sector_grid(Random& random, std::int32_t fold, bool tabs) {
+  return GridMaker(random, fold, tabs).run();
 }
 
 }  // namespace symcell::test

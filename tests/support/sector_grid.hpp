@@ -19,6 +19,7 @@ struct GridCell {
   std::int32_t u = 0;   // ring or place in x
   std::int32_t v = 0;   // column or place in y; -1: all round
   bool hollow = false;  // never filled: a bore
+  bool outer = false;   // of an arm, or at the rim of the rectangles
 };
 
 // The cells at its sides, -1 where there is none. Edges of one line lie on one straight line and
@@ -43,6 +44,7 @@ struct SectorGrid {
   std::int32_t cell_orbits = 0;
   std::int32_t rings = 0;    // u is below it
   std::int32_t columns = 0;  // v likewise
+  bool arms = false;         // their outer cells of one column make one arm
   std::string description;
 
   // The cell's whole outline is seen from there.
@@ -52,7 +54,8 @@ struct SectorGrid {
   [[nodiscard]] std::int32_t edge_between(std::int32_t a, std::int32_t b) const;
 };
 
-// All of it lies within a radius of about 1 (arms: 3).  Requires: fold >= 1.
-[[nodiscard]] SectorGrid make_sector_grid(Random& random, std::int32_t fold);
+// All of it lies within a radius of about 1 (arms: 3).  `tabs`: there are outer cells, none of them
+// at a corner, and cells beside them that may stay empty.  Requires: fold >= 1; tabs: up to 12.
+[[nodiscard]] SectorGrid make_sector_grid(Random& random, std::int32_t fold, bool tabs = false);
 
 }  // namespace symcell::test
