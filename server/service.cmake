@@ -22,6 +22,7 @@ configure_file(${CMAKE_CURRENT_LIST_DIR}/http/pages.cpp.in
 add_library(
   symcell_service STATIC
   base/clock.cpp
+  base/fault_archive.cpp
   base/files.cpp
   base/identifiers.cpp
   base/log.cpp

@@ -92,6 +92,7 @@ class VtuReader {
     const auto array = piece_.child("Points").child("DataArray");
     const auto values = arrays_.reals(array, nodes_ * 3);
     if (!values) return missing(values.error(), "Points");
+    mesh_.single_precision = std::string_view(array.attribute("type").as_string()) != "Float64";
     mesh_.points.resize(static_cast<std::size_t>(nodes_));
     for (std::size_t i = 0; i < mesh_.points.size(); ++i) {
       mesh_.points[i] = {(*values)[3 * i], (*values)[3 * i + 1], (*values)[3 * i + 2]};

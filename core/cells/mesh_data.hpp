@@ -17,6 +17,7 @@ struct MeshData {
   Point3 axis_direction{0, 0, 1};
 
   std::vector<Point3> points;
+  bool single_precision = false;  // the file has coordinates of 32 bits
   std::int32_t nodes_per_element = 3;
   std::vector<std::int32_t> elements;  // indices of points, each in range
   std::vector<std::int32_t> regions;   // per element

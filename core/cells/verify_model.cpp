@@ -1,272 +1,295 @@
+// Models examined: measure, pieces and pinches, each from the model alone.
+#include "core/cells/verify_model.hpp"
+
 #include <algorithm>
 #include <array>
-#include <limits>
-#include <optional>
+#include <cmath>
+#include <type_traits>
 
-#include "core/cells/verify_support.hpp"
-#include "core/geometry/predicates.hpp"
+#include "core/geometry/point_tree.hpp"
+#include "core/geometry/segment_index.hpp"
+#include "core/surface/shells.hpp"
+#include "core/surface/t_junctions.hpp"
+#include "core/surface/weld.hpp"
 
 namespace symcell::internal {
 namespace {
 
-// Nodes by place, for looking up model vertices: sorted by x.
-class NodeFinder {
- public:
-  explicit NodeFinder(const std::vector<Point3>& points) : points_(points), order_(points.size()) {
-    for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::int32_t>(i);
-    std::ranges::sort(order_, {}, [&](std::int32_t i) { return x(i); });
-  }
+// A vertex farther than this from where an image of another should be, as a share of the diameter,
+// is another vertex and no near miss.
+constexpr double kNearMissRel = 1e-5;
+// Distances tried in turn at which vertices of a surface are one, and at which one lies on an open
+// edge, as shares of the diameter.
+constexpr std::array<double, 5> kWeldRel{1e-8, 1e-7, 1e-6, 1e-5, 3e-5};
+constexpr double kJunctionRel = 1e-6;
 
-  // The nearest node within `tolerance`.
-  [[nodiscard]] std::optional<std::int32_t> find(Point2 p, double tolerance) const {
-    auto at =
-        std::ranges::lower_bound(order_, p.x - tolerance, {}, [&](std::int32_t i) { return x(i); });
-    std::optional<std::int32_t> best;
-    double best_distance = tolerance;
-    for (; at != order_.end() && x(*at) <= p.x + tolerance; ++at) {
-      const double d = distance(planar(points_[static_cast<std::size_t>(*at)]), p);
-      if (d > best_distance) continue;
-      best = *at;
-      best_distance = d;
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Classes among the marked.
+std::size_t marked_classes(UnionFind& classes, const std::vector<char>& marked) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < marked.size(); ++i) {
+    const auto index = static_cast<std::int32_t>(i);
+    count += marked[i] != 0 && classes.root(index) == index ? 1 : 0;
+  }
+  return count;
+}
+
+std::vector<Point3> raised(const std::vector<Point2>& points) {
+  std::vector<Point3> result;
+  for (const Point2 p : points) result.push_back({p.x, p.y, 0});
+  return result;
+}
+
+Result<void> check_indices(const Pslg& pslg) {
+  const auto count = static_cast<std::int32_t>(pslg.vertices.size());
+  for (std::size_t s = 0; s < pslg.segments.size(); ++s) {
+    const auto [a, b, marker] = pslg.segments[s];
+    if (a < 0 || b < 0 || a >= count || b >= count || a == b) {
+      return fail(ErrorCode::kIndexOutOfRange,
+                  "segment " + std::to_string(s) + " joins no two vertices of the model");
     }
-    return best;
   }
+  const bool finite =
+      std::ranges::all_of(pslg.vertices, [](Point2 p) { return std::isfinite(p.x + p.y); });
+  if (!finite) return fail(ErrorCode::kNonFinite, "a vertex of the model is not finite");
+  return {};
+}
 
- private:
-  [[nodiscard]] double x(std::int32_t i) const { return points_[static_cast<std::size_t>(i)].x; }
+// A vertex pinches if the meshed sectors round it form more than one run: each begins at a
+// half-edge with the domain on its left and none on its right.
+ModelPinches planar_pinches(const Pslg& pslg, const Subdomains& subdomains) {
+  const PlanarMap& map = subdomains.map;
+  std::vector<std::int32_t> runs(pslg.vertices.size(), 0);
+  for (std::int32_t h = 0; at(h) < map.face.size(); ++h) {
+    const bool begins = subdomains.left_of(h).meshed && !subdomains.left_of(h ^ 1).meshed;
+    if (begins) ++runs[at(map.origin(h))];
+  }
+  ModelPinches pinches;
+  for (std::size_t v = 0; v < runs.size(); ++v) {
+    if (runs[v] > 1) pinches.points.push_back({pslg.vertices[v].x, pslg.vertices[v].y, 0});
+  }
+  return pinches;
+}
 
-  const std::vector<Point3>& points_;
-  std::vector<std::int32_t> order_;
+Result<ExaminedModel> examine(const Pslg& pslg) {
+  if (auto ok = check_indices(pslg); !ok) return tl::unexpected<Error>(ok.error());
+  ExecutionContext context;
+  Result<Subdomains> subdomains = make_subdomains(pslg, context);
+  if (!subdomains) return tl::unexpected<Error>(subdomains.error());
+  ModelFacts facts;
+  facts.diameter = diameter(raised(pslg.vertices));
+  UnionFind parts(subdomains->faces.size());
+  const PlanarMap& map = subdomains->map;
+  for (std::size_t p = 0; p < map.pieces.size(); ++p) {
+    const auto h = static_cast<std::int32_t>(2 * p);
+    const bool left = subdomains->left_of(h).meshed, right = subdomains->left_of(h + 1).meshed;
+    if (left && right) parts.join(map.face[2 * p], map.face[2 * p + 1]);
+    if (left == right) continue;
+    facts.boundary_size +=
+        distance(pslg.vertices[at(map.pieces[p].a)], pslg.vertices[at(map.pieces[p].b)]);
+  }
+  double area = 0;
+  std::vector<char> meshed;
+  for (const Subdomain& face : subdomains->faces) {
+    meshed.push_back(face.meshed ? 1 : 0);
+    if (face.meshed) area += face.area;
+  }
+  facts.measure = area;
+  facts.pieces = marked_classes(parts, meshed);
+  facts.pinches = planar_pinches(pslg, *subdomains);
+  return ExaminedModel{std::move(facts), PlanarModel{&pslg, std::move(*subdomains)}};
+}
+
+double off_plane(const PlcComplex& complex) {
+  double farthest = 0;
+  for (const ComplexFacet& facet : complex.facets) {
+    const double size = length(facet.graph.normal);
+    if (facet.graph.segments.empty() || !(size > 0)) continue;
+    const Point3 normal = (1 / size) * facet.graph.normal;
+    const double level = dot(normal, complex.points[at(facet.graph.segments[0][0])]);
+    for (const auto& segment : facet.graph.segments) {
+      for (const std::int32_t v : segment) {
+        farthest = std::max(farthest, std::abs(dot(normal, complex.points[at(v)]) - level));
+      }
+    }
+  }
+  return farthest;
+}
+
+Result<ExaminedModel> examine(const Plc& plc) {
+  ExecutionContext context;
+  Result<ValidPlc> valid = validate_plc(plc, context);
+  if (!valid) return tl::unexpected<Error>(valid.error());
+  PlcModel model{std::move(*valid), 0};
+  const PlcComplex& complex = model.valid.complex;
+  const PlcCells& cells = model.valid.cells;
+  model.off_plane = off_plane(complex);
+  ModelFacts facts;
+  facts.diameter = complex.diameter;
+  facts.measure = cells.volume;
+  UnionFind parts(cells.cells.size());
+  SidedTriangles solid{complex.points, {}, {}};
+  for (std::size_t f = 0; f < complex.facets.size(); ++f) {
+    const auto& triangles = complex.facets[f].triangles.triangles;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const auto [front, back] = cells.sides[f][t];
+      const bool before = model.meshed(front), behind = model.meshed(back);
+      solid.triangles.push_back(triangles[t]);
+      solid.material.push_back({before, behind});
+      if (before && behind) parts.join(front, back);
+      if (before == behind) continue;
+      const Point3& a = complex.points[at(triangles[t][0])];
+      facts.boundary_size += 0.5 * length(area_normal(a, complex.points[at(triangles[t][1])],
+                                                      complex.points[at(triangles[t][2])]));
+    }
+  }
+  std::vector<char> meshed;
+  for (const PlcCell& cell : cells.cells) meshed.push_back(cell.meshed ? 1 : 0);
+  facts.pieces = marked_classes(parts, meshed);
+  facts.pinches = find_model_pinches(solid);
+  return ExaminedModel{std::move(facts), std::move(model)};
+}
+
+Result<void> check_triangles(const TriangleSurface& surface) {
+  const bool finite = std::ranges::all_of(
+      surface.vertices, [](const Point3& p) { return std::isfinite(p.x + p.y + p.z); });
+  const auto count = static_cast<std::int32_t>(surface.vertices.size());
+  const bool in_range = std::ranges::all_of(surface.triangles, [&](const Triangle& t) {
+    return std::ranges::all_of(t, [&](std::int32_t v) { return v >= 0 && v < count; });
+  });
+  if (finite && in_range && !surface.triangles.empty()) return {};
+  return fail(ErrorCode::kIndexOutOfRange,
+              "the surface has no triangles, or a corner that does not exist or is not finite");
+}
+
+// How the triangles meet at the edges of a surface.
+struct Closure {
+  bool closed = true;    // an even number of triangles at each edge
+  bool agreeing = true;  // as many run one way as the other
+  bool manifold = true;  // two triangles an edge
 };
 
-class ModelChecker {
- public:
-  ModelChecker(const FacetedMesh& full, const Pslg& model, double tolerance, Checks& checks)
-      : full_(full.mesh),
-        edges_(full.facets),
-        groups_(full.groups),
-        model_(model),
-        tolerance_(tolerance),
-        checks_(checks),
-        constrained_(full.groups.size(), 0) {}
+Closure closure_of(const IndexedSurface& surface) {
+  Closure result;
+  const std::vector<EdgeUse> uses = sorted_edge_uses(surface.triangles);
+  for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
+    std::size_t forward = 0;
+    for (std::size_t i = begin; i < end; ++i) forward += uses[i].forward ? 1 : 0;
+    result.closed &= (end - begin) % 2 == 0;
+    result.agreeing &= 2 * forward == end - begin;
+    result.manifold &= end - begin == 2;
+  });
+  return result;
+}
 
-  std::vector<char> run() {
-    collect_neighbours();
-    if (!match_vertices()) return std::move(constrained_);
-    cover_segments();
-    check_points();
-    check_boundary();
-    check_region_borders();
-    return std::move(constrained_);
+// Vertices that are one made one, at the least tolerance that closes the surface.
+IndexedSurface closed_surface(const TriangleSurface& given, double size) {
+  IndexedSurface exact = weld_exactly(given);
+  drop_doubled_triangles(exact);
+  if (exact.triangles.empty() || closure_of(exact).closed) return exact;
+  for (const double share : kWeldRel) {
+    IndexedSurface welded = weld_within(exact, share * size);
+    if (!welded.triangles.empty() && closure_of(welded).closed) return welded;
   }
+  IndexedSurface split = exact;
+  split_at_t_junctions(split, kJunctionRel * size);
+  return closure_of(split).closed ? split : exact;
+}
 
- private:
-  [[nodiscard]] Point2 point(std::int32_t node) const {
-    return planar(full_.points[static_cast<std::size_t>(node)]);
-  }
+SidedTriangles sided(const IndexedSurface& surface) {
+  return {surface.points, surface.triangles,
+          std::vector<std::array<bool, 2>>(surface.triangles.size(), {false, true})};
+}
 
-  // Of each node, the groups of its edges.
-  void collect_neighbours() {
-    first_.assign(full_.points.size() + 1, 0);
-    for (std::size_t g = 0; g + 1 < groups_.size(); ++g) {
-      ++first_[static_cast<std::size_t>(edges_[groups_[g]].nodes[0]) + 1];
-      ++first_[static_cast<std::size_t>(edges_[groups_[g]].nodes[1]) + 1];
-    }
-    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    around_.resize(first_.back());
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for (std::size_t g = 0; g + 1 < groups_.size(); ++g) {
-      around_[next[static_cast<std::size_t>(edges_[groups_[g]].nodes[0])]++] = g;
-      around_[next[static_cast<std::size_t>(edges_[groups_[g]].nodes[1])]++] = g;
-    }
-  }
-
-  // Vertices that no segment names need not be nodes; nor need those outside the meshed domain,
-  // where a dangling segment may end: check_points looks at them.
-  bool match_vertices() {
-    const NodeFinder finder(full_.points);
-    std::vector<char> named(model_.vertices.size(), 0);
-    for (const PslgSegment& s : model_.segments) {
-      for (const std::int32_t v : {s.a, s.b}) {
-        if (v < 0 || static_cast<std::size_t>(v) >= named.size()) {
-          return checks_.add("model.vertices", false,
-                             "a segment names a vertex that does not exist");
-        }
-        named[static_cast<std::size_t>(v)] = 1;
-      }
-    }
-    node_of_.assign(model_.vertices.size(), -1);
-    for (std::size_t v = 0; v < named.size(); ++v) {
-      const auto node = finder.find(model_.vertices[v], tolerance_);
-      if (node) {
-        node_of_[v] = *node;
-      } else if (named[v] != 0) {
-        points_.push_back({model_.vertices[v], Role::kVertex, v, false});
-      }
-    }
-    return true;
-  }
-
-  // Walks from one end to the other along edges that lie on the segment.
-  bool cover(const PslgSegment& segment) {
-    std::int32_t at = node_of_[static_cast<std::size_t>(segment.a)];
-    const std::int32_t end = node_of_[static_cast<std::size_t>(segment.b)];
-    if (at < 0 || end < 0) return false;
-    const Point2 b = model_.vertices[static_cast<std::size_t>(segment.b)];
-    const Point2 a = model_.vertices[static_cast<std::size_t>(segment.a)];
-    const double length = distance(a, b);
-    if (!(length > 0)) return at == end;
-    const Point2 along = (1 / length) * (b - a);
-    while (at != end) {
-      const double here = dot(point(at) - a, along);
-      std::optional<std::size_t> step;
-      double nearest = std::numeric_limits<double>::infinity();
-      for (std::size_t i = first_[static_cast<std::size_t>(at)];
-           i < first_[static_cast<std::size_t>(at) + 1]; ++i) {
-        const std::int32_t to = other_end(around_[i], at);
-        const Point2 d = point(to) - a;
-        const double ahead = dot(d, along) - here;
-        if (std::abs(cross(along, d)) > tolerance_ || ahead <= 0 || ahead >= nearest) continue;
-        nearest = ahead;
-        step = around_[i];
-      }
-      if (!step || here + nearest > length + 2 * tolerance_) return false;
-      constrained_[*step] = 1;
-      at = other_end(*step, at);
-    }
-    return true;
-  }
-
-  [[nodiscard]] std::int32_t other_end(std::size_t group, std::int32_t node) const {
-    const HalfFacet& e = edges_[groups_[group]];
-    return e.nodes[0] == node ? e.nodes[1] : e.nodes[0];
-  }
-
-  // A segment that is no chain of edges must lie outside the meshed domain: samples of it tell.
-  void cover_segments() {
-    constexpr double kSamples[] = {0.137, 0.381, 0.5, 0.618, 0.893};
-    for (std::size_t s = 0; s < model_.segments.size(); ++s) {
-      if (cover(model_.segments[s])) continue;
-      const Point2 a = model_.vertices[static_cast<std::size_t>(model_.segments[s].a)];
-      const Point2 b = model_.vertices[static_cast<std::size_t>(model_.segments[s].b)];
-      for (const double t : kSamples) {
-        points_.push_back({a + t * (b - a), Role::kSegment, s, false});
-      }
+Result<ExaminedModel> examine(const TriangleSurface& given) {
+  if (auto ok = check_triangles(given); !ok) return tl::unexpected<Error>(ok.error());
+  ModelFacts facts;
+  facts.diameter = diameter(given.vertices);
+  SurfaceModel model{&given, closed_surface(given, facts.diameter), false};
+  Closure closure = closure_of(model.welded);
+  if (closure.manifold) {
+    // Each shell at even depth encloses one piece; those at odd depth are cavities.
+    ExecutionContext context;
+    const Result<Shells> shells = orient_shells(model.welded, context);
+    closure.agreeing = shells.has_value();
+    model.manifold = shells.has_value();
+    if (shells) {
+      facts.pieces = static_cast<std::size_t>(
+          std::ranges::count_if(shells->depth, [](std::int32_t d) { return d % 2 == 0; }));
     }
   }
-
-  void check_boundary() {
-    std::string wrong;
-    for (std::size_t g = 0; g + 1 < groups_.size() && wrong.empty(); ++g) {
-      if (groups_[g + 1] - groups_[g] != 1 || constrained_[g] != 0) continue;
-      const HalfFacet& e = edges_[groups_[g]];
-      wrong = "boundary " + facet_name(e.nodes) + " of the mesh lies on no segment";
-    }
-    checks_.add("model.boundary", wrong.empty(), wrong);
+  facts.boundary_size = surface_area(model.welded);
+  if (closure.closed && closure.agreeing && !model.welded.triangles.empty()) {
+    const Box3 box = bounding_box(model.welded.points);
+    facts.measure = std::abs(enclosed_volume(model.welded, 0.5 * (box.low + box.high)));
+    facts.pinches = find_model_pinches(sided(model.welded));
   }
+  return ExaminedModel{std::move(facts), std::move(model)};
+}
 
-  void check_region_borders() {
-    std::string wrong;
-    for (std::size_t g = 0; g + 1 < groups_.size() && wrong.empty(); ++g) {
-      if (groups_[g + 1] - groups_[g] != 2 || constrained_[g] != 0) continue;
-      const HalfFacet& e = edges_[groups_[g]];
-      const auto a = static_cast<std::size_t>(e.element);
-      const auto b = static_cast<std::size_t>(edges_[groups_[g] + 1].element);
-      if (full_.regions[a] == full_.regions[b]) continue;
-      wrong = "the region changes across " + facet_name(e.nodes) + ", which is on no segment";
-    }
-    checks_.add("model.region_borders", wrong.empty(), wrong);
-  }
-
-  // Points of the model of which it matters whether an element is there.
-  enum class Role : std::uint8_t { kVertex, kSegment, kHole, kRegion };
-  struct ModelPoint {
-    Point2 point;
-    Role role = Role::kVertex;
-    std::size_t index = 0;
-    bool found = false;  // in an element
-  };
-
-  void check_points() {
-    for (std::size_t i = 0; i < model_.holes.size(); ++i) {
-      points_.push_back({model_.holes[i], Role::kHole, i, false});
-    }
-    for (std::size_t i = 0; i < model_.regions.size(); ++i) {
-      points_.push_back({model_.regions[i].point, Role::kRegion, i, false});
-    }
-    std::ranges::sort(points_, {}, [](const ModelPoint& p) { return p.point.x; });
-    for (std::size_t e = 0; e < full_.element_count() && !points_.empty(); ++e) find_points(e);
-    for (const ModelPoint& p : points_) {
-      if (p.role == Role::kRegion && !p.found) {
-        wrong(Role::kRegion) = "no element at the seed of region " + std::to_string(p.index);
-      }
-    }
-    static constexpr const char* kNames[] = {"model.vertices", "model.segments", "model.holes",
-                                             "model.regions"};
-    for (std::size_t role = 0; role < 4; ++role) {
-      checks_.add(kNames[role], wrong_[role].empty(), wrong_[role]);
-    }
-  }
-
-  // Marks the points in element `e` and tells what is wrong with them there.
-  void find_points(std::size_t e) {
-    const std::int32_t* nodes =
-        &full_.elements[e * static_cast<std::size_t>(full_.nodes_per_element)];
-    const Point2 a = point(nodes[0]);
-    const Point2 b = point(nodes[1]);
-    const Point2 c = point(nodes[2]);
-    auto at = std::ranges::lower_bound(points_, std::min({a.x, b.x, c.x}), {},
-                                       [](const ModelPoint& p) { return p.point.x; });
-    const double right = std::max({a.x, b.x, c.x});
-    for (; at != points_.end() && at->point.x <= right; ++at) {
-      const Point2 p = at->point;
-      const bool inside = orientation(a, b, p) != Sign::kNegative &&
-                          orientation(b, c, p) != Sign::kNegative &&
-                          orientation(c, a, p) != Sign::kNegative;
-      if (!inside) continue;
-      at->found = true;
-      const std::string index = std::to_string(at->index);
-      const std::string element = "element " + std::to_string(e);
-      switch (at->role) {
-        case Role::kVertex:
-          wrong(at->role) = "vertex " + index + " of the model is no node but lies in " + element;
-          break;
-        case Role::kSegment:
-          wrong(at->role) = "segment " + index + " of the model is no chain of edges in " + element;
-          break;
-        case Role::kHole: wrong(at->role) = element + " covers the seed of hole " + index; break;
-        case Role::kRegion:
-          if (full_.regions[e] == model_.regions[at->index].attribute) break;
-          wrong(at->role) = element + " at the seed of region " + index + " has attribute " +
-                            std::to_string(full_.regions[e]);
-          break;
-      }
-    }
-  }
-
-  std::string& wrong(Role role) { return wrong_[static_cast<std::size_t>(role)]; }
-
-  const MeshData& full_;
-  const std::vector<HalfFacet>& edges_;
-  const std::vector<std::size_t>& groups_;
-  const Pslg& model_;
-  double tolerance_;
-  Checks& checks_;
-  std::vector<char> constrained_;
-  std::vector<std::size_t> first_;   // of each node in around_
-  std::vector<std::size_t> around_;  // groups of edges
-  std::vector<std::int32_t> node_of_;
-  std::vector<ModelPoint> points_;
-  std::array<std::string, 4> wrong_;  // by role
-};
+// Distance of the image of a vertex from what it may be taken for.
+double planar_miss(const PointTree& vertices,
+                   const SegmentIndex& segments,
+                   const Point3& image,
+                   double near) {
+  const double miss = vertices.nearest(image).distance;
+  if (miss < near) return miss;
+  return segments.nearest(planar(image), near).distance;
+}
 
 }  // namespace
 
-std::vector<char> check_model(const FacetedMesh& full,
-                              const Pslg& model,
-                              double tolerance,
-                              Checks& checks) {
-  return ModelChecker(full, model, tolerance, checks).run();
+Result<ExaminedModel> examine_model(const Model& model) {
+  return std::visit([](const auto& given) { return examine(given); }, model);
+}
+
+double model_asymmetry(const Model& model,
+                       double diameter,
+                       const std::function<Point3(const Point3&)>& rotate) {
+  const double near = kNearMissRel * diameter;
+  double worst = 0;
+  const auto note = [&](double miss) {
+    if (miss < near) worst = std::max(worst, miss);
+  };
+  if (const auto* plc = std::get_if<Plc>(&model)) {
+    const PointTree tree(plc->vertices);
+    for (const Point3& p : plc->vertices) note(tree.nearest(rotate(p)).distance);
+  }
+  if (const auto* pslg = std::get_if<Pslg>(&model)) {
+    const std::vector<Point3> vertices = raised(pslg->vertices);
+    std::vector<IndexedSegment> segments;
+    for (const PslgSegment& s : pslg->segments) {
+      segments.push_back({pslg->vertices[at(s.a)], pslg->vertices[at(s.b)]});
+    }
+    const PointTree tree(vertices);
+    const SegmentIndex index(segments);
+    for (const Point3& p : vertices) note(planar_miss(tree, index, rotate(p), near));
+  }
+  return worst;
+}
+
+SurfaceTopology topology_of(std::span<const Triangle> triangles) {
+  std::vector<std::int32_t> vertices;
+  for (const Triangle& t : triangles) vertices.insert(vertices.end(), t.begin(), t.end());
+  std::ranges::sort(vertices);
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  const auto number = [&](std::int32_t v) {
+    return static_cast<std::int32_t>(std::ranges::lower_bound(vertices, v) - vertices.begin());
+  };
+  UnionFind shells(vertices.size());
+  for (const Triangle& t : triangles) {
+    const std::int32_t first = number(t[0]);
+    shells.join(first, number(t[1]));
+    shells.join(first, number(t[2]));
+  }
+  std::int64_t edges = 0;
+  const std::vector<EdgeUse> uses = sorted_edge_uses(triangles);
+  for_each_edge(uses, [&](std::size_t, std::size_t) { ++edges; });
+  return {shells.class_count(), static_cast<std::int64_t>(vertices.size()) - edges +
+                                    static_cast<std::int64_t>(triangles.size())};
 }
 
 }  // namespace symcell::internal

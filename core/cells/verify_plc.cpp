@@ -1,311 +1,270 @@
+// A full mesh of tetrahedra against its PLC: every facet, segment and vertex that the meshed domain
+// has is there, and the mesh ends where the domain does.
 #include <algorithm>
 #include <array>
-#include <limits>
-#include <optional>
+#include <cmath>
 
-#include "core/cells/verify_support.hpp"
-#include "core/geometry/predicates_3.hpp"
-#include "core/model/validate_plc.hpp"
+#include "core/cells/verify_model.hpp"
+#include "core/geometry/point_tree.hpp"
 #include "core/surface/triangle_tree.hpp"
 
 namespace symcell::internal {
 namespace {
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
-
-// Where samples of a segment and of a triangle lie.
+// Where samples of a segment lie that no facet bears.
 constexpr std::array<double, 5> kSegmentSamples{0.137, 0.381, 0.5, 0.618, 0.893};
-constexpr std::array<std::array<double, 3>, 4> kTriangleSamples{
-    {{1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.7, 0.2, 0.1}, {0.1, 0.7, 0.2}, {0.2, 0.1, 0.7}}};
+// The area that mesh faces cover of a facet may differ by this share, or by this many tolerances
+// per diameter, as far as nodes at its rim may be moved.
+constexpr double kAreaRel = 1e-8;
+constexpr double kAreaTolerances = 16;
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
 
 class PlcChecker {
  public:
-  PlcChecker(const FacetedMesh& full, const PlcComplex& model, double tolerance, Checks& checks)
+  PlcChecker(const FacetedMesh& full,
+             const PlcModel& model,
+             double tolerance,
+             double diameter,
+             Checks& checks)
       : full_(full),
         mesh_(full.mesh),
-        model_(model),
-        tolerance_(tolerance),
+        plc_(model),
+        model_(model.valid.complex),
+        tolerance_(tolerance + model.off_plane),
+        area_share_(std::max(kAreaRel, kAreaTolerances * tolerance / diameter)),
         checks_(checks),
-        constrained_(full.groups.size(), 0) {}
+        part_of_(full.group_count(), -1) {}
 
   std::vector<char> run() {
-    match_facets();
-    cover_facets();
+    collect_parts();
+    match_faces();
+    check_areas();
     match_vertices();
     cover_segments();
-    check_points();
+    check_loose();
     check_boundary();
-    check_region_borders();
-    return std::move(constrained_);
+    std::vector<char> constrained(part_of_.size());
+    std::ranges::transform(part_of_, constrained.begin(),
+                           [](std::int32_t part) { return static_cast<char>(part >= 0); });
+    std::vector<RegionSeed> regions;
+    for (const PlcRegion& r : model_.regions) {
+      regions.push_back({r.point, r.attribute, r.max_volume});
+    }
+    check_regions(full_, constrained, model_.holes, regions, checks_);
+    return constrained;
   }
 
  private:
-  using Triangles = std::vector<Triangle>;
+  // A part of a facet that segments bound.
+  struct Part {
+    std::int32_t facet = 0;  // of the input
+    double area = 0;
+    double covered = 0;   // by faces of the mesh
+    bool needed = false;  // meshed on a side
+    bool bounds = false;  // on one side only
+  };
 
-  [[nodiscard]] const Point3& point(std::int32_t node) const {
-    return mesh_.points[static_cast<std::size_t>(node)];
-  }
-  [[nodiscard]] std::array<Point3, 3> of_model(const Triangle& t) const {
-    std::array<Point3, 3> p;
-    for (std::size_t i = 0; i < 3; ++i) p[i] = model_.points[static_cast<std::size_t>(t[i])];
-    return p;
+  [[nodiscard]] std::array<Point3, 3> corners(const Triangle& t) const {
+    return {model_.points[at(t[0])], model_.points[at(t[1])], model_.points[at(t[2])]};
   }
 
-  // A face of the mesh lies on a facet if its corners do and its middle does.
-  void match_facets() {
-    Triangles triangles;
-    for (const ComplexFacet& facet : model_.facets) {
-      triangles.insert(triangles.end(), facet.triangles.triangles.begin(),
-                       facet.triangles.triangles.end());
+  static double area_of(const std::array<Point3, 3>& p) {
+    return 0.5 * length(area_normal(p[0], p[1], p[2]));
+  }
+
+  void collect_parts() {
+    needed_edge_.assign(model_.edges.size(), 0);
+    for (std::size_t f = 0; f < model_.facets.size(); ++f) {
+      const ComplexFacet& facet = model_.facets[f];
+      const std::size_t first = parts_.size();
+      parts_.resize(first + at(facet.triangles.piece_count));
+      for (std::size_t t = 0; t < facet.triangles.triangles.size(); ++t) {
+        const auto [front, back] = plc_.valid.cells.sides[f][t];
+        const bool before = plc_.meshed(front), behind = plc_.meshed(back);
+        const std::size_t index = first + at(facet.triangles.piece[t]);
+        Part& part = parts_[index];
+        part.facet = facet.source;
+        part.area += area_of(corners(facet.triangles.triangles[t]));
+        part.needed = before || behind;
+        part.bounds = before != behind;
+        triangles_.push_back(facet.triangles.triangles[t]);
+        part_of_triangle_.push_back(static_cast<std::int32_t>(index));
+      }
+      mark_needed_edges(f, first);
     }
-    const TriangleTree tree(model_.points, triangles);
+  }
+
+  void mark_needed_edges(std::size_t f, std::size_t first_part) {
+    const ComplexFacet& facet = model_.facets[f];
+    for (std::size_t s = 0; s < facet.edges.size(); ++s) {
+      for (const std::int32_t t : plc_.valid.cells.borders[f][s]) {
+        if (t < 0) continue;
+        const Part& part = parts_[first_part + at(facet.triangles.piece[at(t)])];
+        if (part.needed) needed_edge_[at(facet.edges[s])] = 1;
+      }
+    }
+  }
+
+  // A face of the mesh lies on a part of a facet if its corners do and its middle does.
+  void match_faces() {
+    const TriangleTree tree(model_.points, triangles_);
     std::vector<char> near(mesh_.points.size(), 0);
+    std::int32_t last = -1;
     for (std::size_t i = 0; i < near.size(); ++i) {
-      near[i] = tree.within(mesh_.points[i], tolerance_) ? 1 : 0;
+      near[i] = tree.within(mesh_.points[i], tolerance_, last) ? 1 : 0;
     }
     for (std::size_t g = 0; g < full_.group_count(); ++g) {
-      const auto& nodes = full_.first(g).nodes;
-      const bool all = std::ranges::all_of(
-          nodes, [&](std::int32_t i) { return near[static_cast<std::size_t>(i)] != 0; });
+      const bool all = std::ranges::all_of(full_.first(g).nodes,
+                                           [&](std::int32_t i) { return near[at(i)] != 0; });
       if (!all) continue;
       const std::array<Point3, 3> p = full_.triangle(g);
-      const auto hit = tree.nearest((1.0 / 3) * (p[0] + p[1] + p[2]), tolerance_);
-      if (hit.triangle < 0) continue;
-      const auto q = of_model(triangles[static_cast<std::size_t>(hit.triangle)]);
-      const Point3 normal = cross(q[1] - q[0], q[2] - q[0]);
-      const double size = length(normal);
-      const bool flat = std::ranges::all_of(p, [&](const Point3& corner) {
-        return std::abs(dot(normal, corner - q[0])) <= 2 * tolerance_ * size;
+      const auto hit = tree.nearest((1.0 / 3) * (p[0] + p[1] + p[2]), tolerance_, last);
+      if (hit.triangle < 0 || !in_plane(p, corners(triangles_[at(hit.triangle)]))) continue;
+      part_of_[g] = part_of_triangle_[at(hit.triangle)];
+      parts_[at(part_of_[g])].covered += area_of(p);
+    }
+  }
+
+  [[nodiscard]] bool in_plane(const std::array<Point3, 3>& p,
+                              const std::array<Point3, 3>& plane) const {
+    const Point3 normal = area_normal(plane[0], plane[1], plane[2]);
+    const double size = length(normal);
+    return std::ranges::all_of(p, [&](const Point3& corner) {
+      return std::abs(dot(normal, corner - plane[0])) <= 2 * tolerance_ * size;
+    });
+  }
+
+  void check_areas() {
+    Flaws flaws;
+    for (const Part& part : parts_) {
+      if (!part.needed || std::abs(part.covered - part.area) <= area_share_ * part.area) continue;
+      flaws.note([&] {
+        return "facet " + std::to_string(part.facet) + ": faces of the mesh cover " +
+               shown(part.covered) + " of a part of " + shown(part.area);
       });
-      if (flat) constrained_[g] = 1;
     }
+    flaws.report(checks_, "model.facets");
   }
 
-  // Samples of the facets are on such faces, or outside the meshed domain: check_points looks.
-  void cover_facets() {
-    Triangles faces;
-    for (std::size_t g = 0; g < full_.group_count(); ++g) {
-      if (constrained_[g] != 0) faces.push_back(full_.first(g).nodes);
-    }
-    const TriangleTree tree(mesh_.points, faces);
-    for (const ComplexFacet& facet : model_.facets) {
-      for (const Triangle& t : facet.triangles.triangles) {
-        const std::array<Point3, 3> p = of_model(t);
-        for (const auto& w : kTriangleSamples) {
-          const Point3 sample = w[0] * p[0] + w[1] * p[1] + w[2] * p[2];
-          if (tree.within(sample, 2 * tolerance_)) continue;
-          points_.push_back({sample, Role::kFacet, static_cast<std::size_t>(facet.source), false});
-        }
-      }
-    }
-  }
-
-  // Vertices that no facet and no segment names need not be nodes.
   void match_vertices() {
-    std::vector<std::int32_t> order(mesh_.points.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::int32_t>(i);
-    const auto x = [&](std::int32_t i) { return point(i).x; };
-    std::ranges::sort(order, {}, x);
-    std::vector<char> named(model_.points.size(), 0);
-    for (const ComplexEdge& e : model_.edges) {
-      named[static_cast<std::size_t>(e.a)] = named[static_cast<std::size_t>(e.b)] = 1;
+    const PointTree tree(mesh_.points);
+    std::vector<char> needed(model_.points.size(), 0);
+    for (std::size_t e = 0; e < model_.edges.size(); ++e) {
+      if (needed_edge_[e] == 0) continue;
+      needed[at(model_.edges[e].a)] = needed[at(model_.edges[e].b)] = 1;
     }
     node_of_.assign(model_.points.size(), -1);
-    for (std::size_t v = 0; v < named.size(); ++v) {
-      if (named[v] == 0) continue;
-      const Point3& p = model_.points[v];
-      double best = tolerance_;
-      auto at = std::ranges::lower_bound(order, p.x - tolerance_, {}, x);
-      for (; at != order.end() && x(*at) <= p.x + tolerance_; ++at) {
-        const double d = distance(point(*at), p);
-        if (d > best) continue;
-        best = d;
-        node_of_[v] = *at;
+    for (std::size_t v = 0; v < needed.size(); ++v) {
+      const auto hit = tree.nearest(model_.points[v]);
+      if (hit.distance <= tolerance_) {
+        node_of_[v] = hit.point;
+      } else if (needed[v] != 0) {
+        vertices_.note([&] {
+          return "vertex " + std::to_string(v) +
+                 " of the model is no node; the nearest is off by " + shown(hit.distance);
+        });
+      } else {
+        loose_.push_back({model_.points[v], static_cast<std::int32_t>(v), -1});
       }
-      if (node_of_[v] < 0) points_.push_back({p, Role::kVertex, v, false});
     }
   }
 
   void cover_segments() {
-    collect_neighbours();
+    const NodeGraph graph(mesh_);
     for (std::size_t s = 0; s < model_.edges.size(); ++s) {
       const ComplexEdge& e = model_.edges[s];
-      if (cover(e)) continue;
-      const Point3 a = model_.points[static_cast<std::size_t>(e.a)];
-      const Point3 b = model_.points[static_cast<std::size_t>(e.b)];
+      const std::int32_t from = node_of_[at(e.a)], to = node_of_[at(e.b)];
+      if (from >= 0 && to >= 0 && !straight_chain(mesh_, graph, from, to, tolerance_).empty()) {
+        continue;
+      }
+      if (needed_edge_[s] != 0) {
+        segments_.note([&] { return segment_name(s) + " is no chain of edges"; });
+        continue;
+      }
+      const Point3& a = model_.points[at(e.a)];
+      const Point3& b = model_.points[at(e.b)];
       for (const double t : kSegmentSamples) {
-        points_.push_back({a + t * (b - a), Role::kSegment, s, false});
+        loose_.push_back({a + t * (b - a), -1, static_cast<std::int32_t>(s)});
       }
     }
   }
 
-  void collect_neighbours() {
-    const std::vector<ElementEdge> edges = element_edges(mesh_);
-    first_.assign(mesh_.points.size() + 1, 0);
-    for (const ElementEdge& e : edges) {
-      ++first_[static_cast<std::size_t>(e.low) + 1];
-      ++first_[static_cast<std::size_t>(e.high) + 1];
-    }
-    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    around_.resize(first_.back());
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for (const ElementEdge& e : edges) {
-      around_[next[static_cast<std::size_t>(e.low)]++] = e.high;
-      around_[next[static_cast<std::size_t>(e.high)]++] = e.low;
-    }
+  [[nodiscard]] std::string segment_name(std::size_t s) const {
+    return "the segment from vertex " + std::to_string(model_.edges[s].a) + " to " +
+           std::to_string(model_.edges[s].b);
   }
 
-  // Walks from one end to the other along mesh edges that lie on the segment.
-  [[nodiscard]] bool cover(const ComplexEdge& segment) const {
-    std::int32_t at = node_of_[static_cast<std::size_t>(segment.a)];
-    const std::int32_t end = node_of_[static_cast<std::size_t>(segment.b)];
-    if (at < 0 || end < 0) return false;
-    const Point3 a = model_.points[static_cast<std::size_t>(segment.a)];
-    const Point3 b = model_.points[static_cast<std::size_t>(segment.b)];
-    const double whole = distance(a, b);
-    if (!(whole > 0)) return at == end;
-    const Point3 along = (1 / whole) * (b - a);
-    while (at != end) {
-      const double here = dot(point(at) - a, along);
-      std::int32_t step = -1;
-      double nearest = kFar;
-      for (std::size_t i = first_[static_cast<std::size_t>(at)];
-           i < first_[static_cast<std::size_t>(at) + 1]; ++i) {
-        const Point3 d = point(around_[i]) - a;
-        const double ahead = dot(d, along) - here;
-        if (length(cross(along, d)) > tolerance_ || ahead <= 0 || ahead >= nearest) continue;
-        nearest = ahead;
-        step = around_[i];
+  // Vertices and samples of segments that no meshed facet bears: they must lie in no element.
+  struct Loose {
+    Point3 point;
+    std::int32_t vertex = -1;
+    std::int32_t segment = -1;
+  };
+
+  void check_loose() {
+    std::vector<Point3> points;
+    for (const Loose& l : loose_) points.push_back(l.point);
+    each_holding_element(mesh_, points, [&](std::size_t i, std::size_t e) {
+      const Loose& l = loose_[i];
+      const std::string element = " but lies in element " + std::to_string(e);
+      if (l.segment >= 0) {
+        segments_.note([&] { return segment_name(at(l.segment)) + " is no edge" + element; });
+      } else {
+        vertices_.note(
+            [&] { return "vertex " + std::to_string(l.vertex) + " is no node" + element; });
       }
-      if (step < 0 || here + nearest > whole + 2 * tolerance_) return false;
-      at = step;
-    }
-    return true;
+    });
+    vertices_.report(checks_, "model.vertices");
+    segments_.report(checks_, "model.segments");
   }
 
   void check_boundary() {
-    std::string wrong;
-    for (std::size_t g = 0; g < full_.group_count() && wrong.empty(); ++g) {
-      if (full_.sides(g) != 1 || constrained_[g] != 0) continue;
-      wrong = "boundary " + facet_name(full_.first(g).nodes) + " of the mesh lies on no facet";
-    }
-    checks_.add("model.boundary", wrong.empty(), wrong);
-  }
-
-  void check_region_borders() {
-    std::string wrong;
-    for (std::size_t g = 0; g < full_.group_count() && wrong.empty(); ++g) {
-      if (full_.sides(g) != 2 || constrained_[g] != 0) continue;
-      const auto a = static_cast<std::size_t>(full_.first(g).element);
-      const auto b = static_cast<std::size_t>(full_.second(g).element);
-      if (mesh_.regions[a] == mesh_.regions[b]) continue;
-      wrong = "the region changes across " + facet_name(full_.first(g).nodes) +
-              ", which is on no facet";
-    }
-    checks_.add("model.region_borders", wrong.empty(), wrong);
-  }
-
-  // Points of the model of which it matters whether an element is there.
-  enum class Role : std::uint8_t { kVertex, kSegment, kFacet, kHole, kRegion };
-  struct ModelPoint {
-    Point3 point;
-    Role role = Role::kVertex;
-    std::size_t index = 0;
-    bool found = false;  // in an element
-  };
-
-  void check_points() {
-    for (std::size_t i = 0; i < model_.holes.size(); ++i) {
-      points_.push_back({model_.holes[i], Role::kHole, i, false});
-    }
-    for (std::size_t i = 0; i < model_.regions.size(); ++i) {
-      points_.push_back({model_.regions[i].point, Role::kRegion, i, false});
-    }
-    std::ranges::sort(points_, {}, [](const ModelPoint& p) { return p.point.x; });
-    for (std::size_t e = 0; e < mesh_.element_count() && !points_.empty(); ++e) find_points(e);
-    for (const ModelPoint& p : points_) {
-      if (p.role == Role::kRegion && !p.found) {
-        wrong(Role::kRegion) = "no element at the seed of region " + std::to_string(p.index);
+    Flaws outside, inside;
+    for (std::size_t g = 0; g < full_.group_count(); ++g) {
+      const bool bounds = part_of_[g] >= 0 && parts_[at(part_of_[g])].bounds;
+      const auto name = [&] { return facet_name(full_.first(g).nodes); };
+      if (full_.sides(g) == 1 && !bounds) {
+        outside.note([&] {
+          return "boundary " + name() + " of the mesh lies on no facet that bounds the domain";
+        });
+      }
+      if (full_.sides(g) != 1 && bounds) {
+        inside.note(
+            [&] { return name() + " has elements on both sides, but the domain ends there"; });
       }
     }
-    static constexpr std::array<const char*, 5> kNames{
-        "model.vertices", "model.segments", "model.facets", "model.holes", "model.regions"};
-    for (std::size_t role = 0; role < kNames.size(); ++role) {
-      checks_.add(kNames[role], wrong_[role].empty(), wrong_[role]);
-    }
+    outside.report(checks_, "model.boundary");
+    inside.report(checks_, "model.boundary_complete");
   }
-
-  // Also on the element's faces.
-  [[nodiscard]] static bool holds(const std::array<Point3, 4>& p, const Point3& q) {
-    return orientation_3(q, p[1], p[2], p[3]) != Sign::kNegative &&
-           orientation_3(p[0], q, p[2], p[3]) != Sign::kNegative &&
-           orientation_3(p[0], p[1], q, p[3]) != Sign::kNegative &&
-           orientation_3(p[0], p[1], p[2], q) != Sign::kNegative;
-  }
-
-  // Marks the points in element `e` and tells what is wrong with them there.
-  void find_points(std::size_t e) {
-    const std::array<Point3, 4> p = corners_of(mesh_, e);
-    const double left = std::min({p[0].x, p[1].x, p[2].x, p[3].x});
-    const double right = std::max({p[0].x, p[1].x, p[2].x, p[3].x});
-    auto at =
-        std::ranges::lower_bound(points_, left, {}, [](const ModelPoint& m) { return m.point.x; });
-    for (; at != points_.end() && at->point.x <= right; ++at) {
-      if (!holds(p, at->point)) continue;
-      at->found = true;
-      const std::string index = std::to_string(at->index);
-      const std::string element = "element " + std::to_string(e);
-      switch (at->role) {
-        case Role::kVertex:
-          wrong(at->role) = "vertex " + index + " of the model is no node but lies in " + element;
-          break;
-        case Role::kSegment: {
-          const ComplexEdge& s = model_.edges[at->index];
-          wrong(at->role) = "the segment from vertex " + std::to_string(s.a) + " to " +
-                            std::to_string(s.b) + " is no chain of edges in " + element;
-          break;
-        }
-        case Role::kFacet:
-          wrong(at->role) = "facet " + index + " of the model is no union of faces in " + element;
-          break;
-        case Role::kHole: wrong(at->role) = element + " covers the seed of hole " + index; break;
-        case Role::kRegion:
-          if (mesh_.regions[e] == model_.regions[at->index].attribute) break;
-          wrong(at->role) = element + " at the seed of region " + index + " has attribute " +
-                            std::to_string(mesh_.regions[e]);
-          break;
-      }
-    }
-  }
-
-  std::string& wrong(Role role) { return wrong_[static_cast<std::size_t>(role)]; }
 
   const FacetedMesh& full_;
   const MeshData& mesh_;
+  const PlcModel& plc_;
   const PlcComplex& model_;
   double tolerance_;
+  double area_share_;
   Checks& checks_;
-  std::vector<char> constrained_;
-  std::vector<std::size_t> first_;    // of each node in around_
-  std::vector<std::int32_t> around_;  // its neighbours
-  std::vector<std::int32_t> node_of_;
-  std::vector<ModelPoint> points_;
-  std::array<std::string, 5> wrong_;  // by role
+  std::vector<std::int32_t> part_of_;  // per face of the mesh, -1: on none
+  std::vector<Part> parts_;
+  std::vector<Triangle> triangles_;  // of all facets
+  std::vector<std::int32_t> part_of_triangle_;
+  std::vector<char> needed_edge_;
+  std::vector<std::int32_t> node_of_;  // per vertex of the model, -1: none
+  std::vector<Loose> loose_;
+  Flaws vertices_, segments_;
 };
 
 }  // namespace
 
 std::vector<char> check_model(const FacetedMesh& full,
-                              const Plc& model,
+                              const PlcModel& model,
                               double tolerance,
+                              double diameter,
                               Checks& checks) {
-  ExecutionContext context;
-  const Result<ValidPlc> valid = validate_plc(model, context);
-  if (!valid) {
-    checks.add("model.boundary", false, "the model is not valid: " + valid.error().message);
-    return std::vector<char>(full.groups.size(), 0);
-  }
-  return PlcChecker(full, valid->complex, tolerance, checks).run();
+  return PlcChecker(full, model, tolerance, diameter, checks).run();
 }
 
 }  // namespace symcell::internal

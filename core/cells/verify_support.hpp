@@ -1,16 +1,18 @@
 // Shared by the parts of verify_mesh; nothing else includes it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/cells/mesh_data.hpp"
 #include "core/cells/verify_mesh.hpp"
-#include "core/geometry/rotation.hpp"
 
 namespace symcell::internal {
 
@@ -71,11 +73,61 @@ class Checks {
   VerifyReport* report_;
 };
 
-// A mesh with its facets, as the checks against a model take them.
+// What one check finds: the first flaw in words, and how many there are.
+class Flaws {
+ public:
+  // `describe` is called for the first flaw only.
+  template <class Describe>
+  void note(const Describe& describe) {
+    if (count_++ == 0) first_ = describe();
+  }
+  [[nodiscard]] bool none() const { return count_ == 0; }
+  // Fails if there is a flaw, and tells it; else tells `fine`.
+  bool report(Checks& checks, std::string name, std::string fine = {}) const;
+
+ private:
+  std::size_t count_ = 0;
+  std::string first_;
+};
+
+// Classes of numbers from 0; the smallest of each is its root.
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), std::int32_t{0});
+  }
+  [[nodiscard]] std::int32_t root(std::int32_t i) {
+    auto at = static_cast<std::size_t>(i);
+    while (parent_[at] != static_cast<std::int32_t>(at)) {
+      parent_[at] = parent_[static_cast<std::size_t>(parent_[at])];
+      at = static_cast<std::size_t>(parent_[at]);
+    }
+    return static_cast<std::int32_t>(at);
+  }
+  void join(std::int32_t i, std::int32_t j) {
+    const std::int32_t a = root(i), b = root(j);
+    parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
+  [[nodiscard]] std::size_t class_count() {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < parent_.size(); ++i) {
+      count += parent_[i] == static_cast<std::int32_t>(i) ? 1 : 0;
+    }
+    return count;
+  }
+
+ private:
+  std::vector<std::int32_t> parent_;
+};
+
+// A mesh with its facets; the sides of one facet are a group.
 struct FacetedMesh {
+  explicit FacetedMesh(const MeshData& of)
+      : mesh(of), facets(sorted_facets(of)), groups(facet_groups(facets)) {}
+
   const MeshData& mesh;
-  const std::vector<HalfFacet>& facets;
-  const std::vector<std::size_t>& groups;
+  std::vector<HalfFacet> facets;
+  std::vector<std::size_t> groups;
 
   [[nodiscard]] std::size_t group_count() const { return groups.size() - 1; }
   [[nodiscard]] std::size_t sides(std::size_t group) const {
@@ -85,42 +137,62 @@ struct FacetedMesh {
   [[nodiscard]] const HalfFacet& second(std::size_t group) const {
     return facets[groups[group] + 1];
   }
+  [[nodiscard]] const Point3& point(std::int32_t node) const {
+    return mesh.points[static_cast<std::size_t>(node)];
+  }
   // Of a tetrahedral mesh.
   [[nodiscard]] std::array<Point3, 3> triangle(std::size_t group) const {
-    std::array<Point3, 3> p;
-    for (std::size_t i = 0; i < 3; ++i) {
-      p[i] = mesh.points[static_cast<std::size_t>(first(group).nodes[i])];
-    }
-    return p;
+    const auto& nodes = first(group).nodes;
+    return {point(nodes[0]), point(nodes[1]), point(nodes[2])};
   }
+  // The group of a facet's nodes, ascending; group_count() if there is none.  Cost: O(log N).
+  [[nodiscard]] std::size_t find(const std::array<std::int32_t, 3>& nodes) const;
 };
 
-// The checks that a mesh must pass whatever it meshes; `tag` is "cell" or "full". False if the rest
-// cannot be looked at.
-bool check_elements(const MeshData& mesh, const std::string& tag, double diameter, Checks& checks);
+// f(element, element) for each facet between two elements.
+template <class F>
+void each_inner_facet(const FacetedMesh& mesh, const F& f) {
+  for (std::size_t g = 0; g < mesh.group_count(); ++g) {
+    if (mesh.sides(g) == 2) f(mesh.first(g).element, mesh.second(g).element);
+  }
+}
 
-// model.*: the full mesh against the model. Return, per group of equal facets, whether it is
-// constrained; the mesh's dimension is that of the model.
-std::vector<char> check_model(const FacetedMesh& full,
-                              const Pslg& model,
-                              double tolerance,
-                              Checks& checks);
-std::vector<char> check_model(const FacetedMesh& full,
-                              const Plc& model,
-                              double tolerance,
-                              Checks& checks);
-std::vector<char> check_model(const FacetedMesh& full,
-                              const TriangleSurface& model,
-                              double tolerance,
-                              Checks& checks);
+// The checks of a mesh by itself, whatever it meshes; `tag` is "cell" or "full". False if the rest
+// cannot be looked at.  `tolerance`: nodes closer than this are one node written twice.
+bool check_fields(const MeshData& mesh, const std::string& tag, Checks& checks);
+bool check_elements(const FacetedMesh& mesh,
+                    const std::string& tag,
+                    double tolerance,
+                    Checks& checks);
 
 // Places at which the elements round a node or an edge are not all connected by facets.
 struct Pinches {
   std::vector<std::int32_t> nodes;                 // ascending
-  std::vector<std::array<std::int32_t, 2>> edges;  // likewise; ends ascending
+  std::vector<std::array<std::int32_t, 2>> edges;  // likewise; ends ascending; in space only
 };
-// Of a tetrahedral mesh.  Cost: O(E log E).
+// Cost: O(E log E).
 [[nodiscard]] Pinches find_pinches(const FacetedMesh& mesh);
+
+// Places at which a model's own material is not connected by faces.
+struct ModelPinches {
+  std::vector<Point3> points;
+  std::vector<std::array<Point3, 2>> edges;
+  double tolerance = 0;  // how far nodes may be from them
+
+  [[nodiscard]] bool empty() const { return points.empty() && edges.empty(); }
+  [[nodiscard]] bool on_edge(const Point3& p) const;
+  // Per point, whether it is at a pinch: on an edge, or the nearest of them to a pinched vertex.
+  [[nodiscard]] std::vector<char> excuse(const std::vector<Point3>& places) const;
+};
+
+// *.vertex_links, *.edge_links
+void check_links(const FacetedMesh& mesh,
+                 const std::string& tag,
+                 const ModelPinches& excused,
+                 Checks& checks);
+
+// full.hanging_nodes
+void check_hanging_nodes(const FacetedMesh& full, double tolerance, Checks& checks);
 
 // What is told, not checked: the share of free facets that are locally Delaunay, and the quality.
 void tell_delaunay(const FacetedMesh& full, const std::vector<char>& constrained, Checks& checks);

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/cells/verify_support.hpp"
+#include "core/cells/verify_model.hpp"
 #include "core/surface/triangle_tree.hpp"
 
 namespace symcell::internal {
@@ -57,10 +57,14 @@ struct Farthest {
 class SurfaceChecker {
  public:
   SurfaceChecker(const FacetedMesh& full,
-                 const TriangleSurface& model,
+                 const SurfaceModel& model,
                  double tolerance,
                  Checks& checks)
-      : full_(full), model_(model), tolerance_(tolerance), checks_(checks) {}
+      : full_(full),
+        surface_(model),
+        model_(*model.given),
+        tolerance_(tolerance),
+        checks_(checks) {}
 
   std::vector<char> run() {
     std::vector<Triangle> faces;
@@ -96,11 +100,29 @@ class SurfaceChecker {
     }
     checks_.add("model.covered", from_surface.beyond == 0, from_surface.text());
 
+    check_topology(faces);
     // Inner faces are free, as surfaces have no internal facets.
-    return std::vector<char>(full_.groups.size(), 0);
+    return std::vector<char>(full_.group_count(), 0);
   }
 
  private:
+  // A mesh with a crack, a void or a missing element is near the surface everywhere and still has
+  // another boundary.
+  void check_topology(const std::vector<Triangle>& boundary) {
+    if (!surface_.manifold) {
+      checks_.skip("model.topology", "the surface is not closed with two triangles at each edge");
+      return;
+    }
+    const auto text = [](const SurfaceTopology& t) {
+      return std::to_string(t.shells) + " shells of Euler characteristic " +
+             std::to_string(t.euler);
+    };
+    const SurfaceTopology mesh = topology_of(boundary);
+    const SurfaceTopology wanted = topology_of(surface_.welded.triangles);
+    checks_.add("model.topology", mesh == wanted,
+                "the mesh's boundary has " + text(mesh) + ", the surface " + text(wanted));
+  }
+
   [[nodiscard]] Corners corners(const Triangle& t) const {
     Corners p;
     for (std::size_t i = 0; i < 3; ++i) p[i] = model_.vertices[static_cast<std::size_t>(t[i])];
@@ -108,6 +130,7 @@ class SurfaceChecker {
   }
 
   const FacetedMesh& full_;
+  const SurfaceModel& surface_;
   const TriangleSurface& model_;
   double tolerance_;
   Checks& checks_;
@@ -116,19 +139,10 @@ class SurfaceChecker {
 }  // namespace
 
 std::vector<char> check_model(const FacetedMesh& full,
-                              const TriangleSurface& model,
+                              const SurfaceModel& model,
                               double tolerance,
+                              double /*diameter*/,
                               Checks& checks) {
-  const bool finite = std::ranges::all_of(
-      model.vertices, [](const Point3& p) { return std::isfinite(p.x + p.y + p.z); });
-  const auto count = static_cast<std::int32_t>(model.vertices.size());
-  const bool in_range = std::ranges::all_of(model.triangles, [&](const Triangle& t) {
-    return std::ranges::all_of(t, [&](std::int32_t v) { return v >= 0 && v < count; });
-  });
-  if (!finite || !in_range || model.triangles.empty()) {
-    checks.add("model.on_surface", false, "the model is not valid: inspect it");
-    return std::vector<char>(full.groups.size(), 0);
-  }
   return SurfaceChecker(full, model, tolerance, checks).run();
 }
 

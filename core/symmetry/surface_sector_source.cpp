@@ -187,6 +187,20 @@ bool SectorShape::better_than(const SectorShape& other) const {
   return many_thin() != other.many_thin() ? other.many_thin() : cost < other.cost;
 }
 
+namespace {
+
+BoundaryTopology topology_of(const IndexedSurface& surface) {
+  std::vector<OrbitTriangle> triangles;
+  triangles.reserve(surface.triangles.size());
+  for (const Triangle& t : surface.triangles) {
+    triangles.push_back({OrbitVertex{t[0], 0}, OrbitVertex{t[1], 0}, OrbitVertex{t[2], 0}});
+  }
+  const std::vector<std::uint8_t> on_axis(surface.points.size(), 0);
+  return boundary_topology(1, on_axis, triangles);
+}
+
+}  // namespace
+
 SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean,
                                          SolidSymmetry symmetry,
                                          double tolerance)
@@ -201,6 +215,7 @@ SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean,
     largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     p = symmetry_.frame.to_local(p);
   }
+  topology_ = topology_of(full_);
   noise_ = std::max(kSinglePrecision * largest, kLeastNoiseRel * symmetry_.diameter);
   tree_ = TriangleTree(full_.points, full_.triangles);
   samples_ = samples_of(full_);
@@ -297,6 +312,15 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
 Result<void> SurfaceSectorSource::check_shape(const QuotientSurface& surface,
                                               double shell_share,
                                               ExecutionContext& context) const {
+  const BoundaryTopology topology =
+      boundary_topology(surface.fold, surface.on_axis, surface.triangles);
+  if (topology.shells != topology_.shells || topology.euler != topology_.euler) {
+    return fail(
+        ErrorCode::kInternal,
+        "the sector has another topology than the surface: " + std::to_string(topology.shells) +
+            " shells, Euler characteristic " + std::to_string(topology.euler) + ", for " +
+            std::to_string(topology_.shells) + " and " + std::to_string(topology_.euler));
+  }
   const double volume = full_volume(surface);
   const double error = symmetry_.error_rel * symmetry_.diameter;
   const double most = std::max(kVolumeRel * std::abs(volume_), shell_share * error * area_);

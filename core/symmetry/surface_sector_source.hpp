@@ -10,6 +10,7 @@
 #include "core/surface/quotient_surface.hpp"
 #include "core/surface/triangle_tree.hpp"
 #include "core/symmetry/sector_source.hpp"
+#include "core/verify/boundary_topology.hpp"
 
 namespace symcell {
 
@@ -56,8 +57,8 @@ class SurfaceSectorSource final : public SectorSource {
                                             const Candidate& candidate,
                                             const FlatnessTolerances& flatness,
                                             ExecutionContext& context) const;
-  // Of the input's volume, or off by that share of a shell as thick as the symmetry error at most;
-  // near the input everywhere; without crossings.
+  // Of the input's shells and Euler characteristic, and of its volume, or off by that share of a
+  // shell as thick as the symmetry error at most; near the input everywhere; without crossings.
   [[nodiscard]] Result<void> check_shape(const QuotientSurface& surface,
                                          double shell_share,
                                          ExecutionContext& context) const;
@@ -71,6 +72,7 @@ class SurfaceSectorSource final : public SectorSource {
   double volume_;                // of the input
   double area_;                  // likewise
   IndexedSurface full_;          // local frame
+  BoundaryTopology topology_;    // of full_
   TriangleTree tree_;            // of full_
   std::vector<Point3> samples_;  // of full_
   std::vector<Candidate> candidates_;

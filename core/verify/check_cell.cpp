@@ -9,12 +9,18 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/rotation.hpp"
+#include "core/verify/cell_facets.hpp"
 
 namespace symcell {
 namespace {
 
-using Nodes = std::array<std::int32_t, 3>;  // of a facet, ascending; of an edge the third is -1
+using internal::broken;
+using internal::check_cell_links;
+using internal::ElementFacet;
+using internal::name_of;
+using internal::Nodes;
+using internal::number_of;
+using internal::sort_nodes;
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -23,51 +29,6 @@ std::size_t at(std::int32_t i) {
 // Facet i lies opposite corner i; its nodes run counter-clockwise seen from outside.
 constexpr std::int32_t kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 constexpr std::int32_t kSides[3][2] = {{1, 2}, {2, 0}, {0, 1}};
-
-struct ElementFacet {
-  Nodes nodes;
-  bool even = true;  // the nodes run counter-clockwise seen from outside the element
-  std::int32_t element = 0;
-};
-
-// Sorts; true for an even permutation.
-bool sort_nodes(Nodes& n, std::int32_t dimension) {
-  bool even = true;
-  const auto order = [&](std::size_t i, std::size_t j) {
-    if (n[i] <= n[j]) return;
-    std::swap(n[i], n[j]);
-    even = !even;
-  };
-  order(0, 1);
-  if (dimension == 2) return even;
-  order(1, 2);
-  order(0, 1);
-  return even;
-}
-
-// A number that no two facets are expected to share, nor sums of some to be those of others.
-std::uint64_t number_of(const Nodes& n) {
-  const auto mix = [](std::uint64_t x) {
-    x ^= x >> 32;
-    x *= 0xd6e8feb86659fd93ULL;
-    x ^= x >> 29;
-    x *= 0x9e3779b97f4a7c15ULL;
-    return x ^ (x >> 32);
-  };
-  const auto u = [](std::int32_t i) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i));
-  };
-  return mix(mix(u(n[0]) << 32 | u(n[1])) + u(n[2]) * 0xbf58476d1ce4e5b9ULL);
-}
-
-std::string name_of(const Nodes& n) {
-  std::string name = "of nodes " + std::to_string(n[0]) + "-" + std::to_string(n[1]);
-  return n[2] < 0 ? name : name + "-" + std::to_string(n[2]);
-}
-
-tl::unexpected<Error> broken(const std::string& what) {
-  return fail(ErrorCode::kInternal, "mesh check 'cell': " + what);
-}
 
 class CellChecker {
  public:
@@ -84,7 +45,7 @@ class CellChecker {
     if (auto ok = check_bounds(); !ok) return ok;
     if (auto ok = check_outer(); !ok) return ok;
     if (auto ok = check_boundary(); !ok) return ok;
-    return check_links();
+    return check_cell_links(cell_, marked_, facets_, inner_, pinched_);
   }
 
  private:
@@ -156,6 +117,7 @@ class CellChecker {
         facet.nodes = {v[kFaces[i][0]], v[kFaces[i][1]], v[kFaces[i][2]]};
       }
       facet.even = sort_nodes(facet.nodes, dimension_);
+      facet.number = number_of(facet.nodes);
       f(facet);
     }
   }
@@ -173,13 +135,13 @@ class CellChecker {
         if (is_marked(f.nodes[0]) || is_marked(f.nodes[1]) || is_marked(f.nodes[2])) {
           facets_.push_back(f);
         } else {
-          sum += f.even ? number_of(f.nodes) : ~number_of(f.nodes) + 1;
+          sum += f.even ? f.number : ~f.number + 1;
         }
       });
     }
     if (sum != 0) return broken("facets inside have not one element on each side");
     std::sort(facets_.begin(), facets_.end(), [](const ElementFacet& a, const ElementFacet& b) {
-      return std::tie(a.nodes, a.element) < std::tie(b.nodes, b.element);
+      return std::tie(a.number, a.nodes, a.element) < std::tie(b.number, b.nodes, b.element);
     });
     for (std::size_t i = 0, next = 0; i < facets_.size(); i = next) {
       for (next = i; next < facets_.size() && facets_[next].nodes == facets_[i].nodes;) ++next;
@@ -207,9 +169,11 @@ class CellChecker {
 
   // Index in outer_, -1: the facet is not there.
   [[nodiscard]] std::int64_t find_outer(const Nodes& sorted) const {
-    const auto found =
-        std::lower_bound(outer_.begin(), outer_.end(), sorted,
-                         [](const ElementFacet& f, const Nodes& n) { return f.nodes < n; });
+    const std::uint64_t number = number_of(sorted);
+    const auto found = std::lower_bound(outer_.begin(), outer_.end(), sorted,
+                                        [number](const ElementFacet& f, const Nodes& n) {
+                                          return std::tie(f.number, f.nodes) < std::tie(number, n);
+                                        });
     return found != outer_.end() && found->nodes == sorted ? found - outer_.begin() : -1;
   }
 
@@ -322,59 +286,6 @@ class CellChecker {
     if (found.pinched_vertices.size() != boundary_->pinched_vertices.size() ||
         (found.pinched_edges > 0) != (boundary_->pinched_edges > 0)) {
       return broken("the boundary of the full mesh touches itself");
-    }
-    return {};
-  }
-
-  // Corners of elements at marked nodes, and edges of elements between two, joined over facets.
-  Result<void> check_links() {
-    std::vector<std::int32_t> parent;
-    const auto root = [&](std::int32_t i) {
-      while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
-      return i;
-    };
-    using Place = std::tuple<std::int32_t, std::int32_t, std::int32_t>;  // nodes, element
-    std::vector<Place> places;
-    const auto each_place = [&](const ElementFacet& f, std::int32_t e, const auto& visit) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        if (!is_marked(f.nodes[i])) continue;
-        visit(Place{f.nodes[i], -1, e});
-        for (std::size_t j = 0; j < i && dimension_ == 3; ++j) {
-          if (is_marked(f.nodes[j])) visit(Place{f.nodes[j], f.nodes[i], e});
-        }
-      }
-    };
-    for (const ElementFacet& f : facets_) {
-      each_place(f, f.element, [&](const Place& p) { places.push_back(p); });
-    }
-    std::sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-    parent.resize(places.size());
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto index = [&](const Place& p) {
-      return static_cast<std::int32_t>(std::lower_bound(places.begin(), places.end(), p) -
-                                       places.begin());
-    };
-    for (const std::size_t i : inner_) {
-      const std::int32_t other = facets_[i + 1].element;
-      each_place(facets_[i], facets_[i].element, [&](const Place& p) {
-        const std::int32_t a = root(index(p));
-        const std::int32_t b = root(index({std::get<0>(p), std::get<1>(p), other}));
-        parent[at(std::max(a, b))] = std::min(a, b);
-      });
-    }
-    for (std::size_t i = 1; i < places.size(); ++i) {
-      const auto [a, b, e] = places[i];
-      const auto [c, d, f] = places[i - 1];
-      if (a != c || b != d ||
-          root(static_cast<std::int32_t>(i)) == root(static_cast<std::int32_t>(i - 1))) {
-        continue;
-      }
-      const bool excused = pinched_[at(cell_.nodes[at(a)].orbit)] != 0 &&
-                           (b < 0 || pinched_[at(cell_.nodes[at(b)].orbit)] != 0);
-      if (excused) continue;
-      return broken(b < 0 ? "elements at node " + std::to_string(a) + " touch there only"
-                          : "elements at the edge " + name_of({a, b, -1}) + " touch there only");
     }
     return {};
   }

@@ -12,6 +12,8 @@
 #include "api/schema/options.hpp"
 #include "api/schema/statistics_json.hpp"
 #include "core/mesh_model.hpp"
+#include "server/base/fault_archive.hpp"
+#include "server/base/identifiers.hpp"
 #include "server/cli/atomic_output.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/model_input.hpp"
@@ -105,11 +107,26 @@ class MeshRun {
         {.time_limit_s = options_.time_limit_s,
          .memory_bytes = options_.memory_limit_bytes,
          .progress_bar = !arguments_.quiet});
-    if (!done) return done;
+    if (!done) {
+      keep_fault(done.error());
+      return done;
+    }
     return commit();
   }
 
  private:
+  // For us to look into; a model from standard input is gone.
+  void keep_fault(Error& error) const {
+    const std::filesystem::path state = server::default_state_directory();
+    if (!server::is_fault(error.code) || state.empty() || arguments_.model == "-") return;
+    // Of which kind the model is only the child knows.
+    auto options = options_to_json(options_, ModelKind::kPslg);
+    options.update(options_to_json(options_, ModelKind::kPlc));
+    const auto kept = server::FaultArchive(state / "faults")
+                          .keep(server::make_random_hex(), arguments_.model, options.dump(), error);
+    if (kept) error.message += "; the model and the options are kept in " + kept->string();
+  }
+
   // In the child process: what it does to this object is not seen by commit(), but for the files.
   Result<void> mesh_and_write() {
     auto outcome = mesh();

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "api/version.hpp"
+#include "server/base/fault_archive.hpp"
 #include "server/base/files.hpp"
 #include "server/base/log.hpp"
 #include "server/http/service.hpp"
@@ -53,16 +54,6 @@ struct ServeFlags {
   std::int64_t retention_jobs = 10'000;
   std::int64_t retention_bytes = std::int64_t{20} << 30U;
 };
-
-std::filesystem::path default_data_directory() {
-  const char* state = std::getenv("XDG_STATE_HOME");
-  if (state != nullptr && *state == '/') return std::filesystem::path(state) / "symcell";
-  const char* home = std::getenv("HOME");
-  if (home != nullptr && *home != '\0') {
-    return std::filesystem::path(home) / ".local" / "state" / "symcell";
-  }
-  return {};
-}
 
 void add_network_flags(CLI::App& command, ServeFlags& flags) {
   command.add_option("--host", flags.host, "Address to listen on; 0.0.0.0: every one")
@@ -187,8 +178,8 @@ server::ServiceSettings settings_of(const ServeFlags& flags) {
   settings.jobs.max_elements = flags.max_elements;
   settings.jobs.retention = {flags.retention_hours * 3600, flags.retention_jobs,
                              flags.retention_bytes};
-  settings.data_directory =
-      flags.data_dir.empty() ? default_data_directory() : std::filesystem::path(flags.data_dir);
+  settings.data_directory = flags.data_dir.empty() ? server::default_state_directory()
+                                                   : std::filesystem::path(flags.data_dir);
   settings.grace = std::chrono::milliseconds(static_cast<std::int64_t>(flags.grace_s * 1000));
   return settings;
 }

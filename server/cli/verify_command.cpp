@@ -5,10 +5,6 @@
 #include <optional>
 
 #include "core/cells/verify_mesh.hpp"
-#include "core/model/validate_plc.hpp"
-#include "core/model/validate_pslg.hpp"
-#include "core/surface/clean_surface.hpp"
-#include "core/symmetry/symmetrise.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/model_input.hpp"
 #include "server/cli/report_error.hpp"
@@ -44,30 +40,6 @@ const char* status_name(Check::Status status) {
     case Check::Status::kSkip: return "skip";
   }
   return "fail";
-}
-
-// The model's area at the mesh's own fold, or its volume; nothing where it cannot be measured.
-std::optional<double> model_measure(const Model& model, std::int32_t fold) {
-  ExecutionContext context;
-  if (const auto* surface = std::get_if<TriangleSurface>(&model)) {
-    const Result<CleanSurface> clean = clean_surface(*surface, context);
-    if (!clean || clean->problem) return std::nullopt;
-    return clean->volume;
-  }
-  if (const auto* plc = std::get_if<Plc>(&model)) {
-    const Result<ValidPlc> valid = validate_plc(*plc, context);
-    if (!valid) return std::nullopt;
-    return valid->cells.volume;
-  }
-  const auto* pslg = std::get_if<Pslg>(&model);
-  if (pslg == nullptr || !validate_pslg(*pslg, context)) return std::nullopt;
-  MeshOptions options;
-  options.fold = fold;
-  options.ignore_markers = true;
-  options.symmetry_tolerance_rel = 1e-3;
-  const Result<PslgInspection> found = inspect_pslg(*pslg, options, context);
-  if (!found) return std::nullopt;
-  return found->area;
 }
 
 void print_report(const VerifyReport& report, const VerifyArguments& arguments) {
@@ -106,7 +78,6 @@ Result<bool> verify(const VerifyArguments& arguments) {
     Result<Model> read = read_model_file(arguments.model);
     if (!read) return tl::unexpected(read.error());
     model = std::move(*read);
-    options.model_measure = model_measure(*model, cell->fold);
   }
   const VerifyReport report =
       verify_mesh(*cell, full ? &*full : nullptr, model ? &*model : nullptr, options);
@@ -132,9 +103,9 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->type_name("T")
       ->check(CLI::Range(0.0, 0.1));
   command
-      ->add_option(
-          "--model-tolerance", arguments->model_tolerance,
-          "of nodes against the model, a share of the diameter\n[1e-6; STL and its like 1e-3]")
+      ->add_option("--model-tolerance", arguments->model_tolerance,
+                   "of nodes against the model, a share of the diameter\n[4 times the model's own "
+                   "asymmetry; STL and its like 1e-3]")
       ->type_name("T")
       ->check(CLI::Range(0.0, 0.1));
   command->add_flag("--json", arguments->json, "the report as JSON");

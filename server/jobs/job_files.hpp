@@ -2,6 +2,7 @@
 //
 //   jobs.sqlite                  the rows
 //   lock                         held while a server uses the directory
+//   faults/<id>/                 models of internal errors, see server/base/fault_archive.hpp
 //   incoming/<random>            request bodies that are still arriving; emptied at start
 //   jobs/<id>/model              as uploaded
 //   jobs/<id>/cell               the compact symmetry cell (api/formats/cell_archive.hpp)
@@ -21,6 +22,7 @@ class JobFiles {
   explicit JobFiles(std::filesystem::path data_directory);
 
   [[nodiscard]] std::filesystem::path database() const { return root_ / "jobs.sqlite"; }
+  [[nodiscard]] std::filesystem::path faults() const { return root_ / "faults"; }
   [[nodiscard]] std::filesystem::path lock() const { return root_ / "lock"; }
   // Bodies that a dead server was receiving. Requires: no other server uses the directory.
   void empty_incoming() const;

@@ -194,6 +194,16 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
   return {};
 }
 
+void JobRunner::keep_fault(const Job& job, const Error& error) {
+  if (!is_fault(error.code)) return;
+  parts_.metrics.count("symcell_internal_errors_total", {{"where", "mesh"}});
+  const auto kept = parts_.faults.keep(job.id, parts_.files.model(job.id), job.options_json, error);
+  parts_.logger.error("job_met_internal_error",
+                      {{"job", job.id},
+                       {"what", std::string_view(error.message)},
+                       {"kept", kept ? kept->native() : std::string("not kept")}});
+}
+
 void JobRunner::settle(const Job& job, Running& running, const Result<void>& result) {
   JobChange change{.time_ms = now_ms()};
   JobEvent event = JobEvent::kSucceed;
@@ -204,6 +214,7 @@ void JobRunner::settle(const Job& job, Running& running, const Result<void>& res
     event = running.requeue ? JobEvent::kRequeue : JobEvent::kCancel;
   } else {
     event = JobEvent::kFail;
+    keep_fault(job, result.error());
     change.error_code = error_code_name(result.error().code);
     change.error_json = problem_document(result.error(), "/v1/jobs/" + job.id, "/model")
                             .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

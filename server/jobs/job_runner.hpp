@@ -19,6 +19,7 @@
 #include <string_view>
 
 #include "core/base/execution_context.hpp"
+#include "server/base/fault_archive.hpp"
 #include "server/base/log.hpp"
 #include "server/base/metrics.hpp"
 #include "server/jobs/change_signal.hpp"
@@ -33,6 +34,7 @@ struct RunnerParts {
   JobEngine& engine;
   JobStore& store;
   const JobFiles& files;
+  const FaultArchive& faults;
   ChangeSignal& changes;
   Metrics& metrics;
   Logger& logger;
@@ -80,6 +82,7 @@ class JobRunner {
   void remove_files_if_deleted(const std::string& id);
   void execute(const std::string& id, Running& running);
   [[nodiscard]] Result<void> run_engine(const Job& job, Running& running);
+  void keep_fault(const Job& job, const Error& error);
   void settle(const Job& job, Running& running, const Result<void>& result);
 
   RunnerParts parts_;

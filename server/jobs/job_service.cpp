@@ -69,7 +69,7 @@ JobService::JobService(const std::filesystem::path& data_directory,
   files_.empty_incoming();
   store_ = std::make_unique<SqliteJobStore>(files_.database());
   runner_ = std::make_unique<JobRunner>(
-      RunnerParts{engine_, *store_, files_, changes_, metrics_, logger_}, limits_.workers,
+      RunnerParts{engine_, *store_, files_, faults_, changes_, metrics_, logger_}, limits_.workers,
       limits_.queue_limit);
 }
 
@@ -221,6 +221,7 @@ bool JobService::erase(std::string_view id) {
   if (!store_->erase(id)) return false;
   // A worker that still holds the job removes the files when it lets go and finds the row gone.
   if (!runner_->progress(id)) files_.remove(id);
+  faults_.remove(id);
   logger_.info("job_deleted", {{"job", id}});
   changes_.notify();
   return true;

@@ -110,6 +110,7 @@ class JobService {
   Metrics& metrics_;
   Logger& logger_;
   JobFiles files_;
+  FaultArchive faults_{files_.faults()};
   int lock_descriptor_ = -1;
   ChangeSignal changes_;
   std::unique_ptr<JobStore> store_;

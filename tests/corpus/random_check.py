@@ -1,60 +1,43 @@
-"""Random symmetric models through the real binary and the independent checker beside the tree.
+"""Random planar models through the real binary and the independent checker beside the tree.
 
-random_check.py --symcell PROGRAM --writer PROGRAM [--count N]
-Exit 77 (skipped) where the checker or its packages are absent.
+random_check.py --symcell PROGRAM --writer PROGRAM [--kind loops|cells] [--first SEED] [--count N]
+                [--jobs N]
+
+Kinds: loops round the centre with things between; cells of grids (combs, gears, islands, segments
+that end inside others). Exit 77 (skipped) where the checker or its packages are absent.
 """
 import argparse
-import pathlib
-import subprocess
 import sys
-import tempfile
 
-ANGLES = ["20", "25", "30", "33"]
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-CHECKER = ROOT.parent / "shared" / "tools" / "meshcheck.py"
+import random_runs
+from random_runs import FAILED, INVALID, VALID, Outcome
 
-
-def check(symcell, model, angle, folder):
-    """Text of what is wrong with the mesh of one model, empty if nothing is."""
-    cell, full, stats = (folder / name for name in ("cell.vtu", "full.vtu", "stats.json"))
-    mesh = subprocess.run(
-        [symcell, "mesh", model, "--min-angle", angle, "--cell", cell, "--full", full,
-         "--stats", stats, "--quiet"], capture_output=True, text=True, timeout=120)
-    if mesh.returncode != 0:
-        return f"exit status {mesh.returncode}: {mesh.stderr.strip()}"
-    # Random corners are often narrower than the bound, so edges across them are excused.
-    checked = subprocess.run(
-        [sys.executable, CHECKER, cell, "--full", full, "--model", model, "--stats", stats,
-         "--min-angle", angle, "--exempt-seditious", "--delaunay", "strict", "--quiet"],
-        capture_output=True, text=True, timeout=120)
-    return "" if checked.returncode == 0 else checked.stdout.strip() + checked.stderr.strip()
+ANGLES = ("20", "25", "30", "33")
+KINDS = ("loops", "cells")
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--symcell", required=True)
-    parser.add_argument("--writer", required=True)
-    parser.add_argument("--count", type=int, default=24)
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    random_runs.add_options(parser, KINDS, 24)
     options = parser.parse_args()
-    try:
-        import numpy, scipy  # noqa: F401  the checker's
-    except ImportError as error:
-        print(f"SKIPPED: {error}")
-        return 77
-    if not CHECKER.exists():
-        print("SKIPPED: ../shared is absent")
-        return 77
-    failed = 0
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        subprocess.run([options.writer, folder, str(options.count)], check=True)
-        for number, model in enumerate(sorted(folder.glob("random_*.json"))):
-            angle = ANGLES[number % len(ANGLES)]
-            wrong = check(options.symcell, model, angle, folder)
-            print(f"{model.stem} at {angle} degrees: {wrong or 'holds'}", flush=True)
-            failed += bool(wrong)
-    print(f"{failed} of {options.count} models failed")
-    return 1 if failed else 0
+    if reason := random_runs.skip_reason():
+        print(f"SKIPPED: {reason}")
+        return random_runs.SKIPPED
+
+    def check(seed, base, folder):
+        model, angle = base.with_suffix(".json"), ANGLES[seed % len(ANGLES)]
+        cell, full, stats = (folder / name for name in ("cell.vtu", "full.vtu", "stats.json"))
+        error = random_runs.mesh([options.symcell, "mesh", model, "--min-angle", angle, "--cell", cell,
+                                  "--full", full, "--stats", stats, "--time-limit", "60"], 120)
+        if error:
+            return Outcome(FAILED, error)
+        # Random corners are often narrower than the bound, so edges across them are excused.
+        wrong = random_runs.faults([cell, "--full", full, "--model", model, "--stats", stats,
+                                    "--min-angle", angle, "--exempt-seditious", "--delaunay",
+                                    "strict"], 300)
+        return Outcome(INVALID, random_runs.described(wrong)) if wrong else Outcome(VALID)
+
+    return random_runs.run_seeds(options, check)
 
 
 if __name__ == "__main__":

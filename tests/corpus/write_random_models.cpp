@@ -1,11 +1,16 @@
-// write_random_models DIRECTORY COUNT: random symmetric models as PSLG JSON files, for checks by
-// programs that share no code with the mesher. Models symmetric in shape only are left out: an
-// independent checker judges them by their own asymmetric vertices.
+// write_random_models DIRECTORY KIND FIRST COUNT: random planar models as files, random_SEED.json
+// (PSLG), each with its fold, a 0 and a description in a companion (.txt), for checks by programs
+// that share no code with the mesher. Kinds: loops, cells. Models symmetric in shape only are left
+// out: an independent checker judges them by their own asymmetric vertices.
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <string>
+#include <utility>
 
 #include "tests/support/pslg_builders.hpp"
+#include "tests/support/random_planar_cells.hpp"
+#include "tests/support/test_files.hpp"
 
 namespace symcell {
 namespace {
@@ -42,22 +47,39 @@ void write_json(const Pslg& pslg, std::FILE* out) {
   std::fputs("]}\n", out);
 }
 
-int run(const std::string& directory, int count) {
+// False: left out.
+bool make(const std::string& kind, std::uint64_t seed, Pslg& pslg, std::string& told) {
+  if (kind == "cells") {
+    test::RandomPlanarCells made = test::make_random_planar_cells(seed);
+    told = std::to_string(made.fold) + " 0 " + made.description;
+    pslg = std::move(made.pslg);
+    return true;
+  }
   constexpr std::int32_t kFolds[] = {1, 2, 3, 4, 5, 6, 7, 8, 12, 17, 36, 100};
-  int written = 0;
-  for (std::uint64_t seed = 0; written < count; ++seed) {
-    RandomPslgTraits traits;
-    const Pslg pslg = random_symmetric_pslg(seed, kFolds[seed % std::size(kFolds)], &traits);
-    if (traits.geometry_only) continue;
-    const std::string path = directory + "/random_" + std::to_string(seed) + ".json";
-    std::FILE* out = std::fopen(path.c_str(), "w");
+  RandomPslgTraits traits;
+  pslg = random_symmetric_pslg(seed, kFolds[seed % std::size(kFolds)], &traits);
+  told = std::to_string(traits.fold) + " 0 " + std::to_string(traits.fold) + "-fold loops";
+  return !traits.geometry_only;
+}
+
+int run(const std::string& directory,
+        const std::string& kind,
+        std::uint64_t first,
+        std::uint64_t count) {
+  if (kind != "loops" && kind != "cells") return 2;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    Pslg pslg;
+    std::string told;
+    if (!make(kind, seed, pslg, told)) continue;
+    const std::string base = directory + "/random_" + std::to_string(seed);
+    test::write_file(base + ".txt", told + "\n");
+    std::FILE* out = std::fopen((base + ".json").c_str(), "w");
     if (out == nullptr) {
-      std::fprintf(stderr, "cannot write %s\n", path.c_str());
+      std::fprintf(stderr, "cannot write %s\n", base.c_str());
       return 1;
     }
     write_json(pslg, out);
     std::fclose(out);
-    ++written;
   }
   return 0;
 }
@@ -66,9 +88,11 @@ int run(const std::string& directory, int count) {
 }  // namespace symcell
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fputs("usage: write_random_models DIRECTORY COUNT\n", stderr);
-    return 2;
+  const int status = argc != 5 ? 2
+                               : symcell::run(argv[1], argv[2], std::strtoull(argv[3], nullptr, 10),
+                                              std::strtoull(argv[4], nullptr, 10));
+  if (status == 2) {
+    std::fputs("usage: write_random_models DIRECTORY loops|cells FIRST COUNT\n", stderr);
   }
-  return symcell::run(argv[1], std::atoi(argv[2]));
+  return status;
 }

@@ -12,6 +12,7 @@
 #include "core/cells/full_mesh.hpp"
 #include "core/geometry/predicates.hpp"
 #include "core/model/subdomains.hpp"
+#include "tests/property/planar_link_laws.hpp"
 #include "tests/property/restored_mesh.hpp"
 
 namespace symcell {
@@ -38,7 +39,11 @@ double angle_deg(Point2 apex, Point2 a, Point2 b) {
 
 class LawChecker {
  public:
-  LawChecker(const Pslg& model, double area, const MeshOptions& options, const MeshOutcome& outcome)
+  LawChecker(const Pslg& model,
+             double area,
+             const MeshOptions& options,
+             const MeshOutcome& outcome,
+             const std::vector<Point2>& pinches)
       : model_(model),
         area_(area),
         options_(options),
@@ -51,6 +56,8 @@ class LawChecker {
       high = {std::max(high.x, p.x), std::max(high.y, p.y)};
     }
     diameter_ = distance(low, high);
+    topology_.diameter = diameter_;
+    topology_.pinches = pinches;
   }
 
   std::vector<std::string> run() {
@@ -66,6 +73,7 @@ class LawChecker {
     check_angles();
     check_sizes();
     check_statistics();
+    for (const std::string& law : broken_planar_link_laws(cell_, topology_)) complain(law);
     return broken_;
   }
 
@@ -210,8 +218,12 @@ class LawChecker {
     }
     const PlanarMap& map = subdomains->map;
     std::vector<char> meshed(model_.vertices.size(), 0);
+    std::vector<std::array<std::int64_t, 2>> rim;
     for (std::size_t p = 0; p < map.pieces.size(); ++p) {
       const auto h = static_cast<std::int32_t>(2 * p);
+      if (subdomains->left_of(h).meshed != subdomains->left_of(h + 1).meshed) {
+        rim.push_back({map.pieces[p].a, map.pieces[p].b});
+      }
       if (subdomains->left_of(h).meshed || subdomains->left_of(h + 1).meshed) {
         meshed[idx(map.pieces[p].a)] = meshed[idx(map.pieces[p].b)] = 1;
       }
@@ -220,6 +232,7 @@ class LawChecker {
       const std::int32_t face = map.vertex_face[v];
       if (face >= 0 && subdomains->faces[idx(face)].meshed) meshed[v] = 1;
     }
+    topology_.boundary = test::boundary_topology(rim);
     is_input_.assign(mesh_.points.size(), 0);
     std::vector<std::int32_t> node(meshed.size(), -1);
     for (std::size_t v = 0; v < meshed.size(); ++v) {
@@ -522,6 +535,7 @@ class LawChecker {
   const SymmetryCellMesh& cell_;
   RestoredMesh mesh_;
   double diameter_ = 0;
+  PlanarTopology topology_;
   std::vector<std::size_t> neighbour_;  // per half-edge
   std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> half_edge_of_;
   std::vector<std::int32_t> by_x_;                    // nodes
@@ -537,8 +551,9 @@ class LawChecker {
 std::vector<std::string> broken_laws(const Pslg& model,
                                      double area,
                                      const MeshOptions& options,
-                                     const MeshOutcome& outcome) {
-  return LawChecker(model, area, options, outcome).run();
+                                     const MeshOutcome& outcome,
+                                     const std::vector<Point2>& pinches) {
+  return LawChecker(model, area, options, outcome, pinches).run();
 }
 
 }  // namespace symcell

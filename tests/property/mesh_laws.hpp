@@ -7,6 +7,7 @@
 //   quality    locally Delaunay but at segments; angles, areas and edges within their bounds;
 //              exempt are only elements at narrow input corners, across them, or at the centre
 //   figures    statistics say what the mesh is
+//   links      and rim, topology, hanging: planar_link_laws.hpp
 #pragma once
 
 #include <string>
@@ -17,10 +18,12 @@
 namespace symcell {
 
 // One line for each law that does not hold, with the first entity at fault.
-// `area`: of the meshed domain, known by construction.  `outcome`: of order 1.
+// `area`: of the meshed domain, known by construction.  `outcome`: of order 1.  `pinches`: where
+// the domain touches itself in a vertex.
 [[nodiscard]] std::vector<std::string> broken_laws(const Pslg& model,
                                                    double area,
                                                    const MeshOptions& options,
-                                                   const MeshOutcome& outcome);
+                                                   const MeshOutcome& outcome,
+                                                   const std::vector<Point2>& pinches = {});
 
 }  // namespace symcell

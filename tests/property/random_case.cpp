@@ -4,6 +4,9 @@
 #include <cstdlib>
 #include <random>
 #include <string>
+#include <utility>
+
+#include "tests/support/random_planar_cells.hpp"
 
 namespace symcell {
 namespace {
@@ -20,36 +23,68 @@ std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
   return text == nullptr ? otherwise : std::stoull(text);
 }
 
-}  // namespace
+class Chance {
+ public:
+  explicit Chance(std::uint64_t seed) : engine_(seed) {}
+  double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine_);
+  }
+  bool operator()(double probability) { return uniform(0, 1) < probability; }
+  std::uint64_t number() { return engine_(); }
+  template <class Values>
+  auto pick(const Values& values) {
+    return values[engine_() % std::size(values)];
+  }
 
-RandomCase make_random_case(std::uint64_t seed) {
-  std::mt19937_64 engine(seed ^ 0x5ca1ab1e0ddba11ULL);
-  const auto uniform = [&](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(engine);
-  };
-  const auto chance = [&](double probability) { return uniform(0, 1) < probability; };
-  const auto pick = [&](const auto& values) { return values[engine() % std::size(values)]; };
+ private:
+  std::mt19937_64 engine_;
+};
 
-  RandomCase c;
-  c.seed = seed;
-  const std::int32_t fold =
-      chance(0.8) ? pick(kFolds) : static_cast<std::int32_t>(1 + engine() % 100);
-  c.model = random_symmetric_pslg(seed, fold, &c.traits);
-  c.options.min_angle_deg = pick(kAnglesDeg);
+void choose_options(Chance& chance, RandomCase& c) {
+  c.options.min_angle_deg = chance.pick(kAnglesDeg);
   c.options.plain = chance(0.35);
-  const double elements = uniform(5, 250);
-  const double area = c.traits.area / (elements * fold);
+  const double elements = chance.uniform(5, 250);
+  const double area = c.traits.area / (elements * c.traits.fold);
   if (chance(0.25)) c.options.max_area = area;
   if (chance(0.2)) c.options.max_edge = 1.5 * std::sqrt(area);
-  if (chance(0.2)) c.options.fold = fold;
+  if (chance(0.2)) c.options.fold = c.traits.fold;
   c.options.max_elements = kMaxElements;
   c.options.time_limit_s = kTimeLimitSeconds;
   c.must_succeed = !c.options.plain || c.options.min_angle_deg <= kSurePlainAngleDeg;
+}
+
+}  // namespace
+
+RandomCase make_random_case(std::uint64_t seed) {
+  Chance chance(seed ^ 0x5ca1ab1e0ddba11ULL);
+  RandomCase c;
+  c.seed = seed;
+  const std::int32_t fold =
+      chance(0.8) ? chance.pick(kFolds) : static_cast<std::int32_t>(1 + chance.number() % 100);
+  c.model = random_symmetric_pslg(seed, fold, &c.traits);
+  choose_options(chance, c);
+  return c;
+}
+
+RandomCase make_random_cells_case(std::uint64_t seed) {
+  Chance chance(seed ^ 0xce115ULL);
+  test::RandomPlanarCells made = test::make_random_planar_cells(seed);
+  RandomCase c;
+  c.seed = seed;
+  c.model = std::move(made.pslg);
+  c.description = std::move(made.description);
+  c.pinches = std::move(made.pinches);
+  c.traits.fold = made.fold;
+  c.traits.center = made.center;
+  c.traits.scale = made.scale;
+  c.traits.area = made.area;
+  choose_options(chance, c);
   return c;
 }
 
 std::ostream& operator<<(std::ostream& out, const RandomCase& c) {
-  out << "seed " << c.seed << ": fold " << c.traits.fold << ", min_angle "
+  out << "seed " << c.seed << ": fold " << c.traits.fold
+      << (c.description.empty() ? "" : ", " + c.description) << ", min_angle "
       << c.options.min_angle_deg << (c.options.plain ? ", plain" : ", improved");
   if (c.options.max_area < kInfinity) out << ", max_area " << c.options.max_area;
   if (c.options.max_edge < kInfinity) out << ", max_edge " << c.options.max_edge;

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <ostream>
+#include <string>
+#include <vector>
 
 #include "core/model/mesh_options.hpp"
 #include "core/model/pslg.hpp"
@@ -14,12 +16,16 @@ struct RandomCase {
   std::uint64_t seed = 0;
   Pslg model;
   RandomPslgTraits traits;
+  std::string description;      // of models cut from grids
+  std::vector<Point2> pinches;  // where these touch themselves in a vertex
   MeshOptions options;
   // Whether a mesh must come out: plain refinement is only sure to end for moderate angles.
   bool must_succeed = true;
 };
 
 [[nodiscard]] RandomCase make_random_case(std::uint64_t seed);
+// Likewise, the model cut from a grid of cells (random_planar_cells.hpp).
+[[nodiscard]] RandomCase make_random_cells_case(std::uint64_t seed);
 
 // How to get the case again, for failure messages.
 std::ostream& operator<<(std::ostream& out, const RandomCase& c);

@@ -14,6 +14,7 @@
 #include "core/geometry/predicates_3.hpp"
 #include "core/model/validate_plc.hpp"
 #include "core/refine/tet_measures.hpp"
+#include "tests/property/link_laws.hpp"
 
 namespace symcell {
 namespace {
@@ -57,6 +58,7 @@ class SolidLaws {
     check_quality();
     check_delaunay();
     check_figures();
+    for (const std::string& law : broken_link_laws(cell_, topology_)) broken(law);
     return std::move(broken_);
   }
 
@@ -185,6 +187,10 @@ class SolidLaws {
       }
     }
     if (found.size() != expected.size()) broken("regions: their number is ", found.size());
+    topology_ = {model_.diameter, model_.pinches, test::boundary_topology(*valid)};
+    if (model_.boundary && *model_.boundary != *topology_.boundary) {
+      broken("model: its boundary is not as the generator tells it");
+    }
     find_meshed_facets(*valid);
     check_vertices(valid->complex);
     check_facets(valid->complex);
@@ -265,46 +271,70 @@ class SolidLaws {
     }
   }
 
-  // By marker: the boundary faces lie on facets of their marker, and have their area.
+  // Every boundary face lies on a facet of its marker, and every facet has its area of them.
   void check_facets(const PlcComplex& complex) {
-    std::map<std::int32_t, double> expected, found;
-    std::map<std::int32_t, std::vector<const ComplexFacet*>> of_marker;
-    for (std::size_t f = 0; f < complex.facets.size(); ++f) {
-      const ComplexFacet& facet = complex.facets[f];
-      of_marker[facet.marker].push_back(&facet);
-      for (std::size_t i = 0; i < facet.triangles.triangles.size(); ++i) {
-        if (meshed_triangle_[f][i] == 0) continue;
-        const auto& t = facet.triangles.triangles[i];
-        const Point3 a = complex.points[idx(t[0])];
-        expected[facet.marker] +=
-            0.5 * length(cross(complex.points[idx(t[1])] - a, complex.points[idx(t[2])] - a));
-      }
-    }
+    std::vector<FacetArea> facets;
     double total = 0;
-    for (const auto& [marker, area] : expected) total += area;
+    for (std::size_t f = 0; f < complex.facets.size(); ++f) {
+      FacetArea& area = facets.emplace_back();
+      for (std::size_t i = 0; i < complex.facets[f].triangles.triangles.size(); ++i) {
+        const auto& t = complex.facets[f].triangles.triangles[i];
+        const Point3 a = complex.points[idx(t[0])], b = complex.points[idx(t[1])];
+        const Point3 c = complex.points[idx(t[2])];
+        for (const Point3 p : {a, b, c}) area.widen(p);
+        if (meshed_triangle_[f][i] != 0) area.expected += 0.5 * length(cross(b - a, c - a));
+      }
+      total += area.expected;
+    }
     for (std::size_t b = 0; b < boundary_.size(); ++b) {
-      const Point3 p = at(boundary_[b][0]), q = at(boundary_[b][1]), r = at(boundary_[b][2]);
-      found[markers_[b]] += 0.5 * length(cross(q - p, r - p));
-      const bool lies =
-          std::any_of(of_marker[markers_[b]].begin(), of_marker[markers_[b]].end(),
-                      [&](const ComplexFacet* facet) {
-                        const Point3 base = complex.points[idx(facet->graph.segments.front()[0])];
-                        for (const Point3 x : {p, q, r}) {
-                          if (std::abs(dot(facet->graph.normal, x - base)) > tolerance())
-                            return false;
-                        }
-                        return covers(complex.points, *facet, (1.0 / 3) * (p + q + r));
-                      });
-      if (lies) continue;
-      broken("facets: boundary face ", b, " of marker ", markers_[b], " lies on no such facet");
+      const std::array<Point3, 3> corners{at(boundary_[b][0]), at(boundary_[b][1]),
+                                          at(boundary_[b][2])};
+      const std::size_t f = facet_of(complex, facets, corners, markers_[b]);
+      if (f == facets.size()) {
+        broken("facets: boundary face ", b, " of marker ", markers_[b], " lies on no such facet");
+        return;
+      }
+      facets[f].found += 0.5 * length(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    }
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      if (std::abs(facets[f].found - facets[f].expected) <= kMeasureTolerance * total) continue;
+      broken("facets: ", complex.facets[f].source, " of marker ", complex.facets[f].marker,
+             " has the area ", facets[f].found, " instead of ", facets[f].expected);
       return;
     }
-    for (const auto& [marker, area] : expected) {
-      if (std::abs(found[marker] - area) > kMeasureTolerance * total) {
-        broken("facets: those of marker ", marker, " have the area ", found[marker], " instead of ",
-               area);
-      }
+  }
+
+  struct FacetArea {
+    double expected = 0;
+    double found = 0;
+    Point3 low{kInfinity, kInfinity, kInfinity};
+    Point3 high{-kInfinity, -kInfinity, -kInfinity};
+    void widen(Point3 p) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
+    [[nodiscard]] bool has(Point3 p, double slack) const {
+      return p.x >= low.x - slack && p.y >= low.y - slack && p.z >= low.z - slack &&
+             p.x <= high.x + slack && p.y <= high.y + slack && p.z <= high.z + slack;
+    }
+  };
+
+  // The facet of this marker that has the face; their number if none has.
+  [[nodiscard]] std::size_t facet_of(const PlcComplex& complex,
+                                     const std::vector<FacetArea>& facets,
+                                     const std::array<Point3, 3>& corners,
+                                     std::int32_t marker) const {
+    const Point3 middle = (1.0 / 3) * (corners[0] + corners[1] + corners[2]);
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      const ComplexFacet& facet = complex.facets[f];
+      if (facet.marker != marker || !facets[f].has(middle, tolerance())) continue;
+      const Point3 base = complex.points[idx(facet.graph.segments.front()[0])];
+      const bool flat = std::all_of(corners.begin(), corners.end(), [&](Point3 x) {
+        return std::abs(dot(facet.graph.normal, x - base)) <= tolerance();
+      });
+      if (flat && covers(complex.points, facet, middle)) return f;
+    }
+    return facets.size();
   }
 
   [[nodiscard]] double volume_of(const std::array<std::int64_t, 4>& v) const {
@@ -416,6 +446,7 @@ class SolidLaws {
   std::vector<std::vector<std::uint8_t>> meshed_triangle_;  // per facet of the model
   std::vector<std::uint8_t> meshed_edge_;
   std::vector<std::uint8_t> meshed_point_;
+  ModelTopology topology_;
   std::vector<std::string> broken_;
 };
 

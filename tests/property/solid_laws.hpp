@@ -5,10 +5,11 @@
 //   full mesh  a face has at most two elements, from opposite sides; no coincident nodes; the
 //              model's volume
 //   model      vertices are nodes, segments chains of edges; faces at the mesh's rim are told as
-//              boundary; boundary faces lie on facets of their marker and fill them; every region
+//              boundary; boundary faces lie on facets of their marker and fill each; every region
 //              has its volume
 //   quality    radius-edge ratio but for elements told as exempt; volume and edge bounds for all
 //   figures    statistics say what the mesh is
+//   links      and rim, topology, hanging: link_laws.hpp
 #pragma once
 
 #include <string>

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/model/plc.hpp"
+#include "tests/support/model_topology.hpp"
 
 namespace symcell::test {
 
@@ -29,6 +30,8 @@ struct RandomPlc {
   bool acute = false;
   // Every segment bounds two facets, and what they enclose is all meshed.
   bool plain_surface = true;
+  Pinches pinches;
+  std::optional<BoundaryTopology> boundary;  // where the generator tells it
 };
 
 [[nodiscard]] RandomPlc make_random_plc(std::uint64_t seed, const RandomPlcOptions& options = {});

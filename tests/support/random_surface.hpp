@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/model/triangle_surface.hpp"
+#include "tests/support/model_topology.hpp"
 
 namespace symcell::test {
 
@@ -16,6 +18,8 @@ struct RandomSurface {
   std::int32_t fold = 1;  // of the shape; the tessellation keeps it to within its chords only
   double volume = 0;      // of the tessellation
   double area = 0;
+  bool flat = false;  // of few planes: the tessellation keeps the symmetry exactly
+  std::optional<BoundaryTopology> boundary;  // where the generator tells it
 };
 
 [[nodiscard]] RandomSurface make_random_surface(std::uint64_t seed);

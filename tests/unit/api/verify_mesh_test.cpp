@@ -79,7 +79,12 @@ TEST(VerifyMesh, EveryFlawIsFound) {
       {"model.vertices", [](auto&, auto&, auto& m) { m.vertices[0].x += 0.01; }},
       {"model.segments",
        [](auto&, auto&, auto& m) {
+         // From a vertex of the inner polygon across the ring.
          m.segments.push_back({0, 20, 0});
+       }},
+      {"model.valid",
+       [](auto&, auto&, auto& m) {
+         m.segments.push_back({0, 999, 0});
        }},
       {"model.boundary", [](auto&, auto&, auto& m) { m.segments.pop_back(); }},
       {"model.holes",

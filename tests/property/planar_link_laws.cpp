@@ -1,0 +1,179 @@
+#include "tests/property/planar_link_laws.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "core/cells/full_mesh.hpp"
+#include "core/geometry/point_tree.hpp"
+#include "tests/property/restored_mesh.hpp"
+
+namespace symcell {
+namespace {
+
+constexpr double kPlaceTolerance = 1e-9;  // of the model's diameter
+constexpr double kHanging = 1e-10;        // likewise: how near a node lies in an edge
+
+using Triangles = std::vector<std::array<std::int32_t, 3>>;
+using Edge = std::array<std::int64_t, 2>;
+
+std::size_t idx(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+std::map<Edge, std::vector<std::size_t>> triangles_at_edges(const Triangles& triangles) {
+  std::map<Edge, std::vector<std::size_t>> result;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax({triangles[t][i], triangles[t][(i + 1) % 3]});
+      result[{low, high}].push_back(t);
+    }
+  }
+  return result;
+}
+
+// Nodes whose triangles do not hang together.
+std::set<std::int64_t> parted_nodes(const Triangles& triangles) {
+  std::vector<std::size_t> up(3 * triangles.size());  // per corner
+  std::iota(up.begin(), up.end(), std::size_t{0});
+  const auto root = [&](std::size_t i) {
+    while (up[i] != i) i = up[i] = up[up[i]];
+    return i;
+  };
+  const auto corner = [&](std::size_t t, std::int64_t node) {
+    const auto& c = triangles[t];
+    return 3 * t + idx(std::find(c.begin(), c.end(), node) - c.begin());
+  };
+  for (const auto& [edge, both] : triangles_at_edges(triangles)) {
+    if (both.size() != 2) continue;
+    for (const std::int64_t node : edge) {
+      up[root(corner(both[0], node))] = root(corner(both[1], node));
+    }
+  }
+  std::map<std::int64_t, std::size_t> fan;
+  std::set<std::int64_t> result;
+  for (std::size_t i = 0; i < up.size(); ++i) {
+    const std::int64_t node = triangles[i / 3][i % 3];
+    const auto [first, fresh] = fan.try_emplace(node, root(i));
+    if (!fresh && first->second != root(i)) result.insert(node);
+  }
+  return result;
+}
+
+class PlanarLinkLaws {
+ public:
+  PlanarLinkLaws(const SymmetryCellMesh& cell, const PlanarTopology& model)
+      : model_(model), cell_(cell), mesh_(restore(cell)) {
+    for (const auto& [edge, both] : triangles_at_edges(mesh_.triangles)) {
+      if (both.size() == 1) rim_.push_back(edge);
+    }
+  }
+
+  std::vector<std::string> run() {
+    check_links();
+    check_rim();
+    check_hanging();
+    return std::move(broken_);
+  }
+
+ private:
+  template <class... Parts>
+  void broken(const Parts&... parts) {
+    std::ostringstream text;
+    text.precision(12);
+    (text << ... << parts);
+    broken_.push_back(text.str());
+  }
+  [[nodiscard]] Point2 at(std::int64_t node) const { return mesh_.points[idx(node)]; }
+  [[nodiscard]] bool pinched(std::int64_t node) const {
+    return std::any_of(model_.pinches.begin(), model_.pinches.end(), [&](Point2 p) {
+      return distance(p, at(node)) <= kPlaceTolerance * model_.diameter;
+    });
+  }
+
+  void check_links() {
+    const std::set<std::int64_t> full = parted_nodes(mesh_.triangles);
+    for (const std::int64_t n : full) {
+      if (pinched(n)) continue;
+      broken("links: the triangles round node ", n, " at (", at(n).x, ", ", at(n).y,
+             ") of the full mesh do not hang together");
+      break;
+    }
+    Triangles own;
+    for (std::size_t e = 0; e < cell_.element_count(); ++e) {
+      auto& t = own.emplace_back();
+      for (std::size_t i = 0; i < 3; ++i) {
+        t[i] = cell_.elements[idx(cell_.nodes_per_element) * e + i];
+      }
+    }
+    const FullMeshView view(cell_);
+    for (const std::int64_t n : parted_nodes(own)) {
+      const std::int64_t id = view.node_id(idx(n), 0);
+      if (full.contains(id) || pinched(id)) continue;
+      broken("links: the triangles round node ", n, " at (", at(id).x, ", ", at(id).y,
+             ") of the cell do not hang together as they do in the full mesh");
+      break;
+    }
+  }
+
+  void check_rim() {
+    std::map<std::int64_t, int> edges;
+    for (const Edge& e : rim_) {
+      ++edges[e[0]];
+      ++edges[e[1]];
+    }
+    for (const auto& [node, count] : edges) {
+      if (count == 2 || (count % 2 == 0 && pinched(node))) continue;
+      broken("rim: node ", node, " at (", at(node).x, ", ", at(node).y, ") has ", count,
+             " edges of the boundary");
+      break;
+    }
+    if (!model_.boundary) return;
+    const test::BoundaryTopology found = test::boundary_topology(rim_);
+    if (found == *model_.boundary) return;
+    broken("topology: the boundary has ", found.pieces, " pieces, vertices - edges is ",
+           found.euler, " instead of ", model_.boundary->pieces, " and ", model_.boundary->euler);
+  }
+
+  void check_hanging() {
+    std::vector<Point3> points;
+    for (const Point2 p : mesh_.points) points.push_back({p.x, p.y, 0});
+    const PointTree tree(points);
+    const double reach = kHanging * model_.diameter;
+    for (const Edge& e : rim_) {
+      const Point2 a = at(e[0]), b = at(e[1]);
+      bool found = false;
+      tree.within_box({std::min(a.x, b.x) - reach, std::min(a.y, b.y) - reach, 0},
+                      {std::max(a.x, b.x) + reach, std::max(a.y, b.y) + reach, 0},
+                      [&](std::int32_t n) {
+                        if (n == e[0] || n == e[1]) return;
+                        const Point2 u = b - a, d = at(n) - a;
+                        const double t = std::clamp(dot(d, u) / squared_length(u), 0.0, 1.0);
+                        found = found || length(d - t * u) <= reach;
+                      });
+      if (!found) continue;
+      broken("hanging: a node lies within the edge of the boundary from node ", e[0], " to ", e[1]);
+      break;
+    }
+  }
+
+  const PlanarTopology& model_;
+  const SymmetryCellMesh& cell_;
+  RestoredMesh mesh_;
+  std::vector<Edge> rim_;
+  std::vector<std::string> broken_;
+};
+
+}  // namespace
+
+std::vector<std::string> broken_planar_link_laws(const SymmetryCellMesh& cell,
+                                                 const PlanarTopology& model) {
+  return PlanarLinkLaws(cell, model).run();
+}
+
+}  // namespace symcell
