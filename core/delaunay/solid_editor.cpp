@@ -158,9 +158,7 @@ void SolidEditor::seed_cavity(SolidCavity& cavity) const {
         cavity.tets.push_back(mesh_.neighbour(w.at, w.face));
       }
       break;
-    case SolidLocation::Kind::kOnEdge:
-      static_cast<void>(mesh_.ring(w.at, w.edge[0], w.edge[1], cavity.tets));
-      break;
+    case SolidLocation::Kind::kOnEdge: mesh_.rings(w.at, w.edge[0], w.edge[1], cavity.tets); break;
   }
   cavity.seeds = cavity.tets.size();
 }

@@ -401,6 +401,33 @@ bool QuotientTetrahedralization::ring(TetCopy from,
   return false;
 }
 
+void QuotientTetrahedralization::rings(TetCopy from,
+                                       Corner a,
+                                       Corner b,
+                                       std::vector<TetCopy>& out) const {
+  static_cast<void>(ring(from, a, b, out));
+  if (!is_pinched(segment_of(a, b))) return;
+  for (TetId t = 0; t < tets_.size(); ++t) {
+    if (!alive(t)) continue;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      if (tets_[t].v[i] != a.v) continue;
+      for (std::uint32_t j = 0; j < 4; ++j) {
+        if (j == i || tets_[t].v[j] != b.v) continue;
+        TetCopy c{t, 0};
+        if (!on_axis(a.v)) {
+          c.e = rotations_.subtract(a.k, tets_[t].k[i]);
+        } else if (!on_axis(b.v)) {
+          c.e = rotations_.subtract(b.k, tets_[t].k[j]);
+        }
+        if (corner(c, i) != a || corner(c, j) != b) continue;
+        if (std::find(out.begin(), out.end(), c) == out.end()) {
+          static_cast<void>(ring(c, a, b, out));
+        }
+      }
+    }
+  }
+}
+
 std::uint32_t QuotientTetrahedralization::new_epoch() {
   if (++epoch_ == 0) {
     for (Tet& t : tets_) t.stamp = 0;

@@ -20,6 +20,7 @@
 // treats such a face specially, exponents are composed. Source: [paper] sec. 3-5.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -170,6 +171,17 @@ class QuotientTetrahedralization {
     return edges_.find(edge_key(a, b));
   }
 
+  // Segments along which the solid touches itself: round an edge of one there are several rows of
+  // tetrahedra that hang together by no face. No star is whole there: their vertices never move.
+  void set_pinched(std::int32_t segment) { pinched_.push_back(segment); }
+  [[nodiscard]] bool is_pinched(std::int32_t segment) const {
+    return std::find(pinched_.begin(), pinched_.end(), segment) != pinched_.end();
+  }
+  [[nodiscard]] bool is_fixed(VertexId v) const {
+    return kind(v) == SolidVertexKind::kInput ||
+           (kind(v) == SolidVertexKind::kSegment && is_pinched(parent(v)));
+  }
+
   // Replaces `removed` (each tetrahedron at most once) by `added`, which must fill the same space
   // in the same frame: links follow from the faces' canonical names, so that tetrahedra may meet
   // their own copies. The caller has checked orientation. Ids of the new tetrahedra: added_ids().
@@ -209,6 +221,10 @@ class QuotientTetrahedralization {
   // lies on the boundary: then the row begins and ends at faces without neighbour. For an edge on
   // the axis one period of the ring.
   [[nodiscard]] bool ring(TetCopy from, Corner a, Corner b, std::vector<TetCopy>& out) const;
+
+  // All tetrahedra round the edge, row by row: as ring() but for edges of pinched segments.
+  // Cost there: O(tetrahedra).
+  void rings(TetCopy from, Corner a, Corner b, std::vector<TetCopy>& out) const;
 
   // Next visit mark for Tet::stamp.
   std::uint32_t new_epoch();
@@ -270,6 +286,7 @@ class QuotientTetrahedralization {
   std::vector<Tet> tets_;
   std::vector<Vertex> vertices_;
   EdgeMap edges_;
+  std::vector<std::int32_t> pinched_;
   std::vector<TetId> free_tets_;
   std::vector<VertexId> free_vertices_;
   std::size_t live_tets_ = 0;

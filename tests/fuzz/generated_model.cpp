@@ -417,36 +417,44 @@ class FacetMaker {
   FacetMaker(const Grid& grid, const std::vector<std::uint8_t>& in_model, Plc& plc)
       : grid_(grid), in_model_(in_model), plc_(plc) {}
 
+  template <class Visit>
+  static void for_each_side(const Face& face, const Visit& visit) {
+    const std::vector<std::int32_t>& c = face.corners;
+    for (std::size_t i = 0; i < c.size(); ++i) visit(std::minmax(c[i], c[(i + 1) % c.size()]));
+  }
+
   void run(bool join, bool keep_sides, bool markers) {
     std::map<std::int32_t, std::vector<const Face*>> planes;
     for (std::size_t f = 0; f < grid_.faces.size(); ++f) {
       const Face& face = grid_.faces[f];
       if (in_model_[f] == 0) continue;
+      for_each_side(face, [&](const auto& side) { ++uses_[side]; });
       if (join) {
         planes[face.plane].push_back(&face);
       } else {
-        plc_.facets.push_back({{face.corners}, {}, markers ? 1 + face.plane : 0});
+        plc_.facets.push_back({{face.corners}, {}, markers ? marker(face.plane) : 0});
       }
     }
     for (const auto& [plane, faces] : planes) join_plane(plane, faces, keep_sides, markers);
   }
 
  private:
+  // Planes across the axis have their own; those along it are turned into each other.
+  static std::int32_t marker(std::int32_t plane) { return plane < 100 ? 1 + plane : 100; }
+
   void join_plane(std::int32_t plane,
                   const std::vector<const Face*>& faces,
                   bool keep_sides,
                   bool markers) {
-    PlcFacet facet{Outlines(faces).polygons(), {}, markers ? 1 + plane : 0};
-    if (keep_sides) {
-      std::map<std::pair<std::int32_t, std::int32_t>, int> sides;
-      for (const Face* face : faces) {
-        for (std::size_t i = 0; i < face->corners.size(); ++i) {
-          ++sides[std::minmax(face->corners[i], face->corners[(i + 1) % face->corners.size()])];
-        }
-      }
-      for (const auto& [side, uses] : sides) {
-        if (uses == 2) facet.polygons.push_back({side.first, side.second});
-      }
+    PlcFacet facet{Outlines(faces).polygons(), {}, markers ? marker(plane) : 0};
+    std::map<std::pair<std::int32_t, std::int32_t>, int> sides;
+    for (const Face* face : faces) {
+      for_each_side(*face, [&](const auto& side) { ++sides[side]; });
+    }
+    for (const auto& [side, uses] : sides) {
+      // Facets may not cross where they have no segment.
+      const bool crossed = uses == 2 && uses_.at(side) == 4;
+      if (uses == 2 && (keep_sides || crossed)) facet.polygons.push_back({side.first, side.second});
     }
     find_holes(plane, facet);
     plc_.facets.push_back(std::move(facet));
@@ -497,6 +505,7 @@ class FacetMaker {
 
   const Grid& grid_;
   const std::vector<std::uint8_t>& in_model_;
+  std::map<std::pair<std::int32_t, std::int32_t>, int> uses_;  // of the sides by faces of the model
   Plc& plc_;
 };
 

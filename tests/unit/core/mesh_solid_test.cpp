@@ -9,16 +9,51 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/cells/full_mesh.hpp"
 #include "core/refine/tet_measures.hpp"
+#include "core/symmetry/symmetrise_solid.hpp"
 #include "tests/support/solid_sectors.hpp"
 
 namespace symcell {
 namespace {
+
+constexpr double kHalfBlock = 0.25;
+
+// `count` blocks on rhombs about the z axis, from the corner of one to that of the next: the
+// corners of a ring of radius 1, the middles of its sides moved in and out by the same.
+Plc blocks_that_touch(std::int32_t count) {
+  Plc plc;
+  const double sector = 2 * std::numbers::pi / count;
+  const auto polar = [](double r, double angle, double z) {
+    return Point3{r * std::cos(angle), r * std::sin(angle), z};
+  };
+  for (const double z : {0.0, 0.5}) {
+    for (std::int32_t i = 0; i < count; ++i) {
+      const double middle = std::cos(0.5 * sector);
+      plc.vertices.push_back(polar(1, i * sector, z));
+      plc.vertices.push_back(polar(middle - kHalfBlock, (i + 0.5) * sector, z));
+      plc.vertices.push_back(polar(middle + kHalfBlock, (i + 0.5) * sector, z));
+    }
+  }
+  const std::int32_t up = 3 * count;
+  for (std::int32_t i = 0; i < count; ++i) {
+    const std::array<std::int32_t, 4> rhomb{3 * i, 3 * i + 2, 3 * ((i + 1) % count), 3 * i + 1};
+    PlcFacet bottom{{{rhomb.begin(), rhomb.end()}}, {}, 0}, top = bottom;
+    for (std::int32_t& v : top.polygons[0]) v += up;
+    plc.facets.push_back(bottom);
+    plc.facets.push_back(top);
+    for (std::size_t j = 0; j < 4; ++j) {
+      const std::int32_t a = rhomb[j], b = rhomb[(j + 1) % 4];
+      plc.facets.push_back({{{a, b, b + up, a + up}}, {}, 0});
+    }
+  }
+  return plc;
+}
 
 // One sector, or none that can be cut.
 class PrismSource final : public SectorSource {
@@ -281,6 +316,39 @@ TEST(MeshSolid, CancelAndTimeLimit) {
   const auto b = mesh_solid(source, sized(source), late);
   ASSERT_FALSE(b);
   EXPECT_EQ(b.error().code, ErrorCode::kTimeLimit);
+}
+
+// Blocks in a ring, each of which touches the next along an edge: what one does to that edge, the
+// other must do as well. They are copies of each other, or two kinds of them.
+TEST(MeshSolid, BlocksThatTouchAlongEdges) {
+  for (const std::int32_t fold : {1, 2, 3, 6}) {
+    for (const std::int32_t order : {1, 2}) {
+      SCOPED_TRACE("fold " + std::to_string(fold) + ", order " + std::to_string(order));
+      const Plc plc = blocks_that_touch(6);
+      MeshOptions options;
+      options.fold = fold;
+      options.order = order;
+      options.max_edge = 0.3;
+      ExecutionContext context;
+      const auto source = symmetrise_plc(plc, options, context);
+      ASSERT_TRUE(source) << source.error().message;
+      const auto made = mesh_solid(**source, options, context);
+      ASSERT_TRUE(made) << made.error().message;
+      EXPECT_NEAR(made->statistics.cell.measure * fold, 6 * kHalfBlock * 0.5, 1e-9);
+      const SymmetryCellMesh& cell = made->mesh;
+      const auto place = [&](OrbitVertex v) { return std::pair(v.orbit, v.exponent); };
+      std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> index;
+      for (std::size_t i = 0; i < cell.nodes.size(); ++i) {
+        index[place(cell.nodes[i])] = static_cast<std::int32_t>(i);
+      }
+      for (std::size_t i = 0; i < cell.nodes.size() && fold > 2; ++i) {
+        OrbitVertex image = cell.nodes[i];
+        image.exponent = (image.exponent + 1) % fold;
+        const auto found = index.find(place(image));
+        EXPECT_EQ(cell.lower_to_higher[i], found == index.end() ? -1 : found->second);
+      }
+    }
+  }
 }
 
 }  // namespace
