@@ -1,4 +1,4 @@
-# Sourced by run.sh, test.sh and .ci/run: what to install on Debian 12, and a function that does so.
+# Sourced by run.sh, test.sh, .ci/run and .ci/nightly: what to install on Debian 12, and a function that does so.
 # Where every package is there already, apt is not called.
 
 # What the build looks for with find_package; the tests are part of it, hence GoogleTest.
@@ -13,6 +13,8 @@ build_packages=(
 test_packages=(curl gmsh python3 python3-numpy python3-scipy python3-yaml)
 # What the checks of .ci/run use beyond that.
 check_packages=(clang-format-14)
+# What .ci/nightly uses: clang with libFuzzer.
+nightly_packages=(clang-14 libclang-rt-14-dev)
 
 ensure_packages() {
   if ! command -v dpkg-query > /dev/null; then

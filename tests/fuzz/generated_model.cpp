@@ -398,9 +398,10 @@ class Outlines {
  private:
   void add(std::int32_t a, std::int32_t b) {
     // Sides that two faces share cancel, whichever way round the faces are.
-    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
+    for (const bool turned : {false, true}) {
+      const std::int32_t from = turned ? b : a, to = turned ? a : b;
       const auto [begin, end] = next_.equal_range(from);
-      const auto same = std::find_if(begin, end, [&](const auto& e) { return e.second == to; });
+      const auto same = std::find_if(begin, end, [to](const auto& e) { return e.second == to; });
       if (same == end) continue;
       next_.erase(same);
       return;
