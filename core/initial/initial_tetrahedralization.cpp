@@ -173,6 +173,7 @@ class Gluer {
     auto cover = measure_facet_cover(constraints_of(result_.mesh, result_.axis_segment()));
     if (!cover) return failed(cover.error().message);
     result_.cover = std::move(*cover);
+    result_.mesh.set_pinched(result_.cover.boundary.touching);
     double reach = 0, low = 0, high = 0;
     for (const Point3& p : sector_.orbit_points) {
       reach = std::max(reach, std::hypot(p.x, p.y));

@@ -111,6 +111,13 @@ class QuotientTetrahedralization {
   }
   [[nodiscard]] std::int32_t parent(VertexId v) const { return vertex(v).parent; }
   [[nodiscard]] bool on_axis(VertexId v) const { return vertex(v).on_axis; }
+  // Vertices at which the boundary touches itself, those along an edge where it does among them:
+  // their tetrahedra need not hang together by faces, yet star() and round_edge() find them all.
+  [[nodiscard]] bool pinched(VertexId v) const { return vertex(v).pinch >= 0; }
+  // Requires: v has no tetrahedra yet.
+  void set_pinched(VertexId v);
+  // Likewise of vertices that have. Cost: O(tetrahedra).
+  void set_pinched(std::span<const VertexId> vertices);
   // A tetrahedron with the vertex as a corner.
   [[nodiscard]] TetId tet_at(VertexId v) const { return vertex(v).tet; }
 
@@ -205,10 +212,16 @@ class QuotientTetrahedralization {
   // The tetrahedra at vertex copy (v, 0) in the universal cover; at an axis vertex every
   // tetrahedron once, at exponent 0 of its gauge. Appends nothing if v has none.
   void star(VertexId v, std::vector<TetCopy>& out) const;
+  // Of a pinched vertex those that hang together by faces with tet_at(v); of others all.
+  void fan(VertexId v, std::vector<TetCopy>& out) const;
   // The tetrahedra round edge (a, b), in order; `from` contains both. `closed` is false if the edge
   // lies on the boundary: then the row begins and ends at faces without neighbour. For an edge on
   // the axis one period of the ring.
   [[nodiscard]] bool ring(TetCopy from, Corner a, Corner b, std::vector<TetCopy>& out) const;
+
+  // All tetrahedra at edge (a, b), also where they are several rows that touch there only; in no
+  // order. `from` contains both. For an edge on the axis one period.
+  void round_edge(TetCopy from, Corner a, Corner b, std::vector<TetCopy>& out) const;
 
   // Next visit mark for Tet::stamp.
   std::uint32_t new_epoch();
@@ -228,6 +241,7 @@ class QuotientTetrahedralization {
     Point3 point;
     TetId tet = std::numeric_limits<TetId>::max();
     std::int32_t parent = -1;
+    std::int32_t pinch = -1;  // of pinched vertices: index in pinch_tets_
     SolidVertexKind kind = SolidVertexKind::kFree;
     bool on_axis = false;
   };
@@ -261,6 +275,8 @@ class QuotientTetrahedralization {
   [[nodiscard]] std::uint64_t outline_hash(
       Corner a, Corner b, Corner c, std::int32_t facet, std::span<const EdgeKey> without) const;
   TetId take_slot();
+  [[nodiscard]] std::span<const TetId> tets_at_pinch(VertexId v) const;
+  void note_at_pinches(TetId t);
   void keep(TetId t) { trial_.tets.emplace_back(t, tets_[t]); }
   void keep(VertexId v) { trial_.vertices.emplace_back(v, vertices_[idx(v)]); }
   [[nodiscard]] std::vector<TetId> spatial_order() const;
@@ -287,6 +303,10 @@ class QuotientTetrahedralization {
     std::vector<std::optional<VertexId>> free_vertices;
   };
   Trial trial_;
+
+  // Of each pinched vertex its tetrahedra, and others that once were: looked through when asked
+  // for.
+  mutable std::vector<std::vector<TetId>> pinch_tets_;
 
   // Of star(): the copy of each tetrahedron that was met first.
   struct Seen {
