@@ -206,30 +206,35 @@ class PartFinder {
     return c;
   }
 
-  // Exactly: the hull's coplanar facets have flat tetrahedra before them, whose coordinates tell
-  // nothing.
+  // Flat tetrahedra lie before coplanar facets of the hull and before the section, beyond the
+  // model: a seed in one is a seed beside it.
+  [[nodiscard]] static bool is_flat(const std::array<Point3, 4>& c) {
+    constexpr double kFlatRelative = 1e-9;  // 6 V / longest edge^3
+    double longest2 = 0;
+    for (const auto& [i, j] : kEdgeCorners) {
+      longest2 = std::max(longest2, squared_distance(c[i], c[j]));
+    }
+    const double volume = dot(cross(c[1] - c[0], c[2] - c[0]), c[3] - c[0]);
+    return !(volume > kFlatRelative * longest2 * std::sqrt(longest2));
+  }
+
   [[nodiscard]] bool contains(TetId t, Point3 p) const {
     const std::array<Point3, 4> c = corners(t);
     for (std::size_t i = 0; i < 4; ++i) {
       const auto& f = kFaceCorners[i];
       if (orientation_3(c[f[0]], c[f[2]], c[f[1]], p) == Sign::kNegative) return false;
     }
-    return orientation_3(c[0], c[1], c[2], c[3]) == Sign::kPositive;
+    return !is_flat(c);
   }
 
   // An image is off by the rounding of one rotation, and beside the cut may be in no tetrahedron:
-  // barycentric coordinates of those worth the name change by less than this. Flat ones have none.
+  // barycentric coordinates change by less than this.
   static constexpr double kRounding = 1e-9;
-  static constexpr double kFlatRelative = 1e-9;  // 6 V / longest edge^3
 
   [[nodiscard]] double least_barycentric(TetId t, Point3 p, double enough) const {
     const std::array<Point3, 4> c = corners(t);
+    if (is_flat(c)) return -1;
     const double volume = dot(cross(c[1] - c[0], c[2] - c[0]), c[3] - c[0]);
-    double longest2 = 0;
-    for (const auto& [i, j] : kEdgeCorners) {
-      longest2 = std::max(longest2, squared_distance(c[i], c[j]));
-    }
-    if (!(volume > kFlatRelative * longest2 * std::sqrt(longest2))) return -1;
     double least = 1;
     for (std::size_t i = 0; i < 4 && least > enough; ++i) {
       const Point3 a = c[kFaceCorners[i][0]], b = c[kFaceCorners[i][1]], d = c[kFaceCorners[i][2]];
