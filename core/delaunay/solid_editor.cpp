@@ -159,7 +159,11 @@ void SolidEditor::seed_cavity(SolidCavity& cavity) const {
       }
       break;
     case SolidLocation::Kind::kOnEdge:
-      static_cast<void>(mesh_.ring(w.at, w.edge[0], w.edge[1], cavity.tets));
+      if (mesh_.is_pinched(mesh_.segment_of(w.edge[0], w.edge[1]))) {
+        mesh_.pinched_ring(w.at, w.edge[0], w.edge[1], cavity.tets);
+      } else {
+        static_cast<void>(mesh_.ring(w.at, w.edge[0], w.edge[1], cavity.tets));
+      }
       break;
   }
   cavity.seeds = cavity.tets.size();
@@ -460,9 +464,13 @@ VertexId SolidEditor::insert(const SolidCavity& cavity,
                              SolidVertexKind kind,
                              std::int32_t parent,
                              bool on_axis) {
-  const VertexId p = mesh_.add_vertex(cavity.point, kind, on_axis, parent);
   const bool split = cavity.where.kind == SolidLocation::Kind::kOnEdge;
   const auto& edge = cavity.where.edge;
+  const std::int32_t segment = split ? mesh_.segment_of(edge[0], edge[1]) : kNoSegment;
+  // Where the boundary touches itself a vertex has several stars, of which an edit would see one.
+  const bool pinched = mesh_.is_pinched(segment);
+  const VertexId p = mesh_.add_vertex(cavity.point, pinched ? SolidVertexKind::kInput : kind,
+                                      on_axis, pinched ? -1 : parent);
   const auto facet_at = [&](Corner a, Corner b) {
     const EdgeKey name = outline_name(a, b);
     for (const SolidOutlineEdge& e : cavity.outline) {
@@ -485,7 +493,6 @@ VertexId SolidEditor::insert(const SolidCavity& cavity,
     }
     new_tets_.push_back(t);
   }
-  const std::int32_t segment = split ? mesh_.segment_of(edge[0], edge[1]) : kNoSegment;
   std::array<EdgeKey, 3> halves;
   if (segment != kNoSegment) {
     halves = {mesh_.edge_key(edge[0], edge[1]), mesh_.edge_key(edge[0], {p, 0}),

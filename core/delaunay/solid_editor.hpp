@@ -99,7 +99,7 @@ class SolidEditor {
                                  SolidCavity& cavity,
                                  std::size_t most_dropped = kManyDropped);
   // Inserts the cavity's point; kNoVertex if the mesh refuses. New tetrahedra: mesh().added_ids().
-  // `parent`: segment or facet of a point on one.
+  // `parent`: segment or facet of a point on one. On a pinched segment the vertex is fixed.
   static constexpr VertexId kNoVertex = -1;
   [[nodiscard]] VertexId insert(const SolidCavity& cavity,
                                 SolidVertexKind kind,

@@ -173,6 +173,7 @@ class Gluer {
     auto cover = measure_facet_cover(constraints_of(result_.mesh, result_.axis_segment()));
     if (!cover) return failed(cover.error().message);
     result_.cover = std::move(*cover);
+    fix_pinched_segments();
     double reach = 0, low = 0, high = 0;
     for (const Point3& p : sector_.orbit_points) {
       reach = std::max(reach, std::hypot(p.x, p.y));
@@ -186,6 +187,16 @@ class Gluer {
     const auto same = compare_facet_covers(*wanted, result_.cover, result_.diameter);
     if (!same) return failed(same.error().message);
     return {};
+  }
+
+  void fix_pinched_segments() {
+    QuotientTetrahedralization& mesh = result_.mesh;
+    mesh.set_pinched_segments(result_.cover.pinched_segments);
+    for (std::size_t i = 0; i < mesh.vertex_slots(); ++i) {
+      const auto v = static_cast<VertexId>(i);
+      if (mesh.kind(v) != SolidVertexKind::kSegment || !mesh.is_pinched(mesh.parent(v))) continue;
+      mesh.set_kind(v, SolidVertexKind::kInput, -1);
+    }
   }
 
   [[nodiscard]] Constraints constraints_of_sector() const {

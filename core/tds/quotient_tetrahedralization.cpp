@@ -401,6 +401,31 @@ bool QuotientTetrahedralization::ring(TetCopy from,
   return false;
 }
 
+void QuotientTetrahedralization::pinched_ring(TetCopy from,
+                                              Corner a,
+                                              Corner b,
+                                              std::vector<TetCopy>& out) const {
+  const std::size_t begin = out.size();
+  static_cast<void>(ring(from, a, b, out));
+  const bool axis = on_axis(a.v) && on_axis(b.v);
+  for (TetId t = 0; t < tets_.size(); ++t) {
+    if (!alive(t)) continue;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      for (std::uint32_t j = 0; j < 4; ++j) {
+        const Corner x = corner(t, i), y = corner(t, j);
+        if (i == j || x.v != a.v || y.v != b.v) continue;
+        const std::int32_t e =
+            on_axis(a.v) ? rotations_.subtract(b.k, y.k) : rotations_.subtract(a.k, x.k);
+        if (!(shift(x, e) == a) || !(shift(y, e) == b)) continue;
+        const bool known =
+            std::any_of(out.begin() + static_cast<std::ptrdiff_t>(begin), out.end(),
+                        [&](const TetCopy& c) { return c.t == t && (axis || c.e == e); });
+        if (!known) static_cast<void>(ring({t, e}, a, b, out));
+      }
+    }
+  }
+}
+
 std::uint32_t QuotientTetrahedralization::new_epoch() {
   if (++epoch_ == 0) {
     for (Tet& t : tets_) t.stamp = 0;

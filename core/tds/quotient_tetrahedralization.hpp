@@ -20,6 +20,7 @@
 // treats such a face specially, exponents are composed. Source: [paper] sec. 3-5.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -66,7 +67,7 @@ struct Tet {
 };
 
 enum class SolidVertexKind : std::uint8_t {
-  kInput,    // of the model: never moved
+  kInput,    // of the model, or where the boundary touches itself: never moved
   kSegment,  // on a subsegment chain (the axis included): slides along it
   kFacet,    // in the plane of one facet
   kFree,
@@ -170,6 +171,13 @@ class QuotientTetrahedralization {
     return edges_.find(edge_key(a, b));
   }
 
+  // Segments along which the boundary touches itself: at their subsegments several rows of
+  // tetrahedra meet that no face joins. Ascending.
+  void set_pinched_segments(std::vector<std::int32_t> segments) { pinched_ = std::move(segments); }
+  [[nodiscard]] bool is_pinched(std::int32_t segment) const {
+    return std::binary_search(pinched_.begin(), pinched_.end(), segment);
+  }
+
   // Replaces `removed` (each tetrahedron at most once) by `added`, which must fill the same space
   // in the same frame: links follow from the faces' canonical names, so that tetrahedra may meet
   // their own copies. The caller has checked orientation. Ids of the new tetrahedra: added_ids().
@@ -209,6 +217,9 @@ class QuotientTetrahedralization {
   // lies on the boundary: then the row begins and ends at faces without neighbour. For an edge on
   // the axis one period of the ring.
   [[nodiscard]] bool ring(TetCopy from, Corner a, Corner b, std::vector<TetCopy>& out) const;
+
+  // As ring, for all rows of tetrahedra at a subsegment of a pinched segment.  Cost: O(tetrahedra).
+  void pinched_ring(TetCopy from, Corner a, Corner b, std::vector<TetCopy>& out) const;
 
   // Next visit mark for Tet::stamp.
   std::uint32_t new_epoch();
@@ -270,6 +281,7 @@ class QuotientTetrahedralization {
   std::vector<Tet> tets_;
   std::vector<Vertex> vertices_;
   EdgeMap edges_;
+  std::vector<std::int32_t> pinched_;  // segments
   std::vector<TetId> free_tets_;
   std::vector<VertexId> free_vertices_;
   std::size_t live_tets_ = 0;

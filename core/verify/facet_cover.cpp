@@ -39,9 +39,12 @@ class CoverMeter {
     add_lengths();
     add_areas();
     if (auto ok = add_edges(); !ok) return tl::unexpected<Error>(ok.error());
-    auto& all = cover_.incidences;
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
+    const auto keep_different = [](auto& all) {
+      std::sort(all.begin(), all.end());
+      all.erase(std::unique(all.begin(), all.end()), all.end());
+    };
+    keep_different(cover_.incidences);
+    keep_different(cover_.pinched_segments);
     std::vector<OrbitTriangle> boundary;
     for (const Subfacet& f : c_.subfacets) {
       if (!f.two_sided) boundary.push_back(f.corners);
@@ -104,6 +107,11 @@ class CoverMeter {
                          std::tuple(facet_of(y), y.triangle, y.side);
                 });
       const std::int32_t segment = segment_of(uses[i].edge);
+      const auto one_sided = std::count_if(
+          uses.begin() + static_cast<std::ptrdiff_t>(i),
+          uses.begin() + static_cast<std::ptrdiff_t>(next),
+          [&](const OrbitEdgeUse& u) { return !c_.subfacets[at(u.triangle)].two_sided; });
+      if (segment >= 0 && one_sided > 2) cover_.pinched_segments.push_back(segment);
       for (std::size_t first = i, last = i; first < next; first = last) {
         while (last < next && facet_of(uses[last]) == facet_of(uses[first])) ++last;
         const std::span<const OrbitEdgeUse> own(&uses[first], last - first);

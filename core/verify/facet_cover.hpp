@@ -64,6 +64,8 @@ struct FacetCover {
   std::vector<double> segment_lengths;
   std::vector<Incidence> incidences;  // ascending, without repeats
   BoundaryTopology boundary;          // of the one-sided subfacets
+  // With a subsegment of more than two one-sided subfacets; ascending.
+  std::vector<std::int32_t> pinched_segments;
 };
 
 // Errors: kInternal if away from subsegments a facet does not go on over an edge, or folds there.
