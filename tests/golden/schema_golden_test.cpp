@@ -41,7 +41,8 @@ Statistics sample_statistics() {
   s.exempt = {{"small_input_angle", 1}};
   s.repairs = {"1,234 triangles turned round: the surface was inside out"};
   s.delaunay = false;
-  s.timings_ms = {.parse = 1, .symmetry = 2, .initial = 3, .refine = 4, .cell = 5, .check = 6, .total = 21};
+  s.timings_ms = {
+      .parse = 1, .symmetry = 2, .initial = 3, .refine = 4, .cell = 5, .check = 6, .total = 21};
   s.peak_memory_bytes = 1048576;
   return s;
 }
