@@ -2,10 +2,8 @@
 // reads the arrays that are written, and shares no code with what made them.
 //
 //   fields    arrays of fitting lengths, indices in range
-//   nodes     each used, no two the same copy of an orbit, on the axis exponent 0; each orbit has
-//   one elements  distinct corners, none turned inside out; facets inside have two elements, on
-//   opposite
-//             sides
+//   nodes     each used, no two the same copy of an orbit, on the axis exponent 0, one an orbit
+//   elements  distinct corners, none turned inside out; inner facets have two, on opposite sides
 //   bounds    lower facets go to higher ones node by node, by one step of rotation, and are seen
 //             from the other side; a facet of one element is on a bound or listed as boundary
 //   listed    facets of the boundary are facets of elements, each once, marked as images on the
