@@ -32,7 +32,7 @@ void CellTopology::load_star(VertexId v) {
   star_.on_axis = mesh_->on_axis(v);
   star_.members.clear();
   copies_.clear();
-  mesh_->star(v, copies_);
+  mesh_->fan(v, copies_);
   order_.clear();
   for (const TetCopy& c : copies_) {
     const std::int32_t e = star_.on_axis ? 0 : c.e;

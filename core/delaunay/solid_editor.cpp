@@ -158,7 +158,9 @@ void SolidEditor::seed_cavity(SolidCavity& cavity) const {
         cavity.tets.push_back(mesh_.neighbour(w.at, w.face));
       }
       break;
-    case SolidLocation::Kind::kOnEdge: mesh_.rings(w.at, w.edge[0], w.edge[1], cavity.tets); break;
+    case SolidLocation::Kind::kOnEdge:
+      mesh_.round_edge(w.at, w.edge[0], w.edge[1], cavity.tets);
+      break;
   }
   cavity.seeds = cavity.tets.size();
 }
@@ -461,6 +463,10 @@ VertexId SolidEditor::insert(const SolidCavity& cavity,
   const VertexId p = mesh_.add_vertex(cavity.point, kind, on_axis, parent);
   const bool split = cavity.where.kind == SolidLocation::Kind::kOnEdge;
   const auto& edge = cavity.where.edge;
+  const std::int32_t segment = split ? mesh_.segment_of(edge[0], edge[1]) : kNoSegment;
+  if (segment != kNoSegment && mesh_.pinched(edge[0].v) && mesh_.pinched(edge[1].v)) {
+    mesh_.set_pinched(p);
+  }
   const auto facet_at = [&](Corner a, Corner b) {
     const EdgeKey name = outline_name(a, b);
     for (const SolidOutlineEdge& e : cavity.outline) {
@@ -483,7 +489,6 @@ VertexId SolidEditor::insert(const SolidCavity& cavity,
     }
     new_tets_.push_back(t);
   }
-  const std::int32_t segment = split ? mesh_.segment_of(edge[0], edge[1]) : kNoSegment;
   std::array<EdgeKey, 3> halves;
   if (segment != kNoSegment) {
     halves = {mesh_.edge_key(edge[0], edge[1]), mesh_.edge_key(edge[0], {p, 0}),

@@ -152,7 +152,7 @@ std::vector<VertexId> SolidImprover::vertices_in_order() const {
     for (const VertexId v : mesh_.tet(t).v) {
       if (seen[static_cast<std::size_t>(v)] != 0) continue;
       seen[static_cast<std::size_t>(v)] = 1;
-      if (!mesh_.is_fixed(v)) order.push_back(v);
+      if (mesh_.kind(v) != SolidVertexKind::kInput) order.push_back(v);
     }
   }
   return order;
@@ -175,7 +175,7 @@ std::size_t SolidImprover::collapse_cut_vertices() {
     const auto v = static_cast<VertexId>(i);
     const SolidVertexKind kind = mesh_.kind(v);
     const bool cut = kind == SolidVertexKind::kSegment || kind == SolidVertexKind::kFacet;
-    if (cut && !mesh_.on_axis(v) && !mesh_.is_fixed(v)) left.push_back(v);
+    if (cut && !mesh_.on_axis(v)) left.push_back(v);
   }
   for (const double floor : kCutFloors) {
     std::vector<VertexId> stay;

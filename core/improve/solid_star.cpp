@@ -40,7 +40,7 @@ bool SolidSurgery::load_star(VertexId v) {
   star_edits_ = edits_;
   star_judged_ = false;
   star_.clear();
-  if (!mesh_.is_fixed(v)) mesh_.star(v, star_);
+  mesh_.star(v, star_);
   if (star_.size() > kMaxStar) star_.clear();
   if (star_tets_.size() < star_.size()) star_tets_.resize(star_.size());
   star_order_.resize(star_.size());

@@ -49,7 +49,6 @@ class Gluer {
     if (auto ok = add_tetrahedra(); !ok) return tl::unexpected<Error>(ok.error());
     release_unused_vertices();
     add_segments();
-    find_pinched_segments();
     if (auto ok = check(); !ok) return tl::unexpected<Error>(ok.error());
     if (auto ok = measure_cover(); !ok) return tl::unexpected<Error>(ok.error());
     return std::move(result_);
@@ -156,34 +155,6 @@ class Gluer {
     }
   }
 
-  // Those whose edges have more tetrahedra than one row of neighbours.
-  void find_pinched_segments() {
-    QuotientTetrahedralization& mesh = result_.mesh;
-    EdgeMap uses;
-    const auto for_each_use = [&](const auto& visit) {
-      for (TetId t = 0; t < mesh.tet_slots(); ++t) {
-        for (const auto& [i, j] : kEdgeCorners) {
-          const Corner a = mesh.corner(t, i), b = mesh.corner(t, j);
-          const std::int32_t segment = mesh.segment_of(a, b);
-          if (segment != kNoSegment) visit(t, a, b, segment);
-        }
-      }
-    };
-    for_each_use([&](TetId, Corner a, Corner b, std::int32_t) {
-      const EdgeKey key = mesh.edge_key(a, b);
-      uses.set(key, std::max(uses.find(key), 0) + 1);
-    });
-    std::vector<TetCopy> ring;
-    for_each_use([&](TetId t, Corner a, Corner b, std::int32_t segment) {
-      const std::int32_t count = uses.find(mesh.edge_key(a, b));
-      if (count == 0 || mesh.is_pinched(segment)) return;
-      uses.set(mesh.edge_key(a, b), 0);
-      ring.clear();
-      static_cast<void>(mesh.ring({t, 0}, a, b, ring));
-      if (ring.size() < at(count)) mesh.set_pinched(segment);
-    });
-  }
-
   // Volumes that are certainly positive, and angles that close round every edge.
   Result<void> check() {
     const auto report = validate_tetrahedra(result_.mesh, ValidationLevel::kEmbedding);
@@ -202,6 +173,7 @@ class Gluer {
     auto cover = measure_facet_cover(constraints_of(result_.mesh, result_.axis_segment()));
     if (!cover) return failed(cover.error().message);
     result_.cover = std::move(*cover);
+    result_.mesh.set_pinched(result_.cover.boundary.touching);
     double reach = 0, low = 0, high = 0;
     for (const Point3& p : sector_.orbit_points) {
       reach = std::max(reach, std::hypot(p.x, p.y));

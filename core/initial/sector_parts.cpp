@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/geometry/predicates_3.hpp"
 #include "core/geometry/rotation.hpp"
 
 namespace symcell::initial {
@@ -172,34 +173,68 @@ class PartFinder {
 
   // The tetrahedron at the seed's image in the wedge; none if it lies beyond the convex hull.
   [[nodiscard]] std::optional<TetId> locate(Point3 p) const {
-    // An image is off by the rounding of one rotation; barycentric coordinates of tetrahedra worth
-    // the name change by less than this.
-    constexpr double kRounding = 1e-9;
     const double theta = 2 * std::numbers::pi / sector_.fold;
     const double turns = (std::atan2(p.y, p.x) - sector_.start_angle) / theta;
     const RotationTable rotations(sector_.fold);
     const auto copy = static_cast<std::int64_t>(std::floor(turns));
-    double best = -kRounding;
-    std::optional<TetId> found;
     // A seed near a cut may fall to either side.
-    for (const std::int64_t k : {copy, copy - 1, copy + 1}) {
-      const Point3 image = rotations.rotate(p, rotations.reduce(-k));
+    const std::array copies{copy, copy - 1, copy + 1};
+    const std::size_t count = sector_.fold == 1 ? 1 : copies.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Point3 image = rotations.rotate(p, rotations.reduce(-copies[i]));
+      for (TetId t = 0; t < mesh_.tets.size(); ++t) {
+        if (contains(t, image)) return t;
+      }
+    }
+    std::optional<TetId> found;
+    double best = -kRounding;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Point3 image = rotations.rotate(p, rotations.reduce(-copies[i]));
       for (TetId t = 0; t < mesh_.tets.size(); ++t) {
         const double inside = least_barycentric(t, image, best);
         if (inside <= best) continue;
         best = inside;
         found = t;
       }
-      if (best >= 0 || sector_.fold == 1) break;
     }
     return found;
   }
 
-  [[nodiscard]] double least_barycentric(TetId t, Point3 p, double enough) const {
+  [[nodiscard]] std::array<Point3, 4> corners(TetId t) const {
     std::array<Point3, 4> c;
     for (std::size_t i = 0; i < 4; ++i) c[i] = mesh_.points[at(mesh_.tets[t][i])];
+    return c;
+  }
+
+  // Flat tetrahedra lie before coplanar facets of the hull and before the section, beyond the
+  // model: a seed in one is a seed beside it.
+  [[nodiscard]] static bool is_flat(const std::array<Point3, 4>& c) {
+    constexpr double kFlatRelative = 1e-9;  // 6 V / longest edge^3
+    double longest2 = 0;
+    for (const auto& [i, j] : kEdgeCorners) {
+      longest2 = std::max(longest2, squared_distance(c[i], c[j]));
+    }
     const double volume = dot(cross(c[1] - c[0], c[2] - c[0]), c[3] - c[0]);
-    if (!(volume > 0)) return -1;
+    return !(volume > kFlatRelative * longest2 * std::sqrt(longest2));
+  }
+
+  [[nodiscard]] bool contains(TetId t, Point3 p) const {
+    const std::array<Point3, 4> c = corners(t);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto& f = kFaceCorners[i];
+      if (orientation_3(c[f[0]], c[f[2]], c[f[1]], p) == Sign::kNegative) return false;
+    }
+    return !is_flat(c);
+  }
+
+  // An image is off by the rounding of one rotation, and beside the cut may be in no tetrahedron:
+  // barycentric coordinates change by less than this.
+  static constexpr double kRounding = 1e-9;
+
+  [[nodiscard]] double least_barycentric(TetId t, Point3 p, double enough) const {
+    const std::array<Point3, 4> c = corners(t);
+    if (is_flat(c)) return -1;
+    const double volume = dot(cross(c[1] - c[0], c[2] - c[0]), c[3] - c[0]);
     double least = 1;
     for (std::size_t i = 0; i < 4 && least > enough; ++i) {
       const Point3 a = c[kFaceCorners[i][0]], b = c[kFaceCorners[i][1]], d = c[kFaceCorners[i][2]];

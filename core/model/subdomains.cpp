@@ -41,18 +41,20 @@ void measure(const Pslg& pslg, Subdomains& subdomains) {
   subdomains.faces[0].moment = {};
 }
 
-// Where segments cross, vertices that touch but for rounding may be the reason: then the segments
-// are cut there. The error, if it stays, is the one of the input as given.
+// Vertices that touch a segment but for rounding lie on it: on one side of it the segments that end
+// there cross it, on the other they leave a gap. The error, if one stays, is that of the input as
+// given.
 Result<PlanarMap> make_tolerant_map(const Pslg& pslg,
                                     const std::vector<Point2>& seeds,
                                     ExecutionContext& context) {
   auto exact = make_planar_map(pslg.vertices, pslg.segments, seeds, context);
-  if (exact || exact.error().code != ErrorCode::kSelfIntersection) return exact;
+  if (!exact && exact.error().code != ErrorCode::kSelfIntersection) return exact;
   const auto cut = cut_at_near_vertices(pslg.vertices, pslg.segments, resolution_of(pslg.vertices));
-  if (!cut) return exact;
+  const std::size_t cuts = cut ? cut->segments.size() - pslg.segments.size() : 0;
+  if (!cut || (exact && cuts <= exact->cuts)) return exact;
   auto map = make_planar_map(pslg.vertices, cut->segments, seeds, context);
   if (!map) return exact;
-  map->cuts += cut->segments.size() - pslg.segments.size();
+  map->cuts += cuts;
   for (PlanarPiece& piece : map->pieces) piece.segment = cut->source[at(piece.segment)];
   return map;
 }

@@ -65,6 +65,36 @@ void QuotientTetrahedralization::release_vertex(VertexId v) {
   free_vertices_.push_back(v);
 }
 
+void QuotientTetrahedralization::set_pinched(VertexId v) {
+  if (trial_.open) keep(v);
+  vertices_[idx(v)].pinch = static_cast<std::int32_t>(pinch_tets_.size());
+  pinch_tets_.emplace_back();
+}
+
+void QuotientTetrahedralization::set_pinched(std::span<const VertexId> vertices) {
+  for (const VertexId v : vertices) set_pinched(v);
+  for (TetId t = 0; t < tets_.size() && !vertices.empty(); ++t) {
+    if (alive(t)) note_at_pinches(t);
+  }
+}
+
+void QuotientTetrahedralization::note_at_pinches(TetId t) {
+  for (const VertexId v : tets_[t].v) {
+    if (pinched(v)) pinch_tets_[idx(vertex(v).pinch)].push_back(t);
+  }
+}
+
+std::span<const TetId> QuotientTetrahedralization::tets_at_pinch(VertexId v) const {
+  std::vector<TetId>& list = pinch_tets_[idx(vertex(v).pinch)];
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  std::erase_if(list, [&](TetId t) {
+    return t >= tets_.size() || !alive(t) ||
+           std::find(tets_[t].v, tets_[t].v + 4, v) == tets_[t].v + 4;
+  });
+  return list;
+}
+
 TetId QuotientTetrahedralization::take_slot() {
   ++live_tets_;
   if (!free_tets_.empty()) {
@@ -235,6 +265,7 @@ bool QuotientTetrahedralization::replace(std::span<const TetCopy> removed,
     }
     t.region = n.region;
     ++t.version;
+    if (!pinch_tets_.empty()) note_at_pinches(id);
   }
   for (std::size_t n = 0; n < added.size(); ++n) {
     for (std::uint32_t i = 0; i < 4; ++i) {
@@ -297,10 +328,26 @@ std::vector<TetId> QuotientTetrahedralization::take_back_trial() {
   undo_free(trial_.free_vertices, free_vertices_);
   std::sort(written.begin(), written.end());
   written.erase(std::unique(written.begin(), written.end()), written.end());
+  for (const TetId t : written) {
+    if (!pinch_tets_.empty() && alive(t)) note_at_pinches(t);
+  }
   return written;
 }
 
 void QuotientTetrahedralization::star(VertexId v, std::vector<TetCopy>& out) const {
+  if (!pinched(v)) {
+    fan(v, out);
+    return;
+  }
+  for (const TetId t : tets_at_pinch(v)) {
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      if (tets_[t].v[i] != v) continue;
+      out.push_back({t, on_axis(v) ? 0 : rotations_.subtract(0, tets_[t].k[i])});
+    }
+  }
+}
+
+void QuotientTetrahedralization::fan(VertexId v, std::vector<TetCopy>& out) const {
   const TetId start = vertex(v).tet;
   if (start == std::numeric_limits<TetId>::max()) return;
   const std::size_t begin = out.size();
@@ -401,29 +448,22 @@ bool QuotientTetrahedralization::ring(TetCopy from,
   return false;
 }
 
-void QuotientTetrahedralization::rings(TetCopy from,
-                                       Corner a,
-                                       Corner b,
-                                       std::vector<TetCopy>& out) const {
-  static_cast<void>(ring(from, a, b, out));
-  if (!is_pinched(segment_of(a, b))) return;
-  for (TetId t = 0; t < tets_.size(); ++t) {
-    if (!alive(t)) continue;
+void QuotientTetrahedralization::round_edge(TetCopy from,
+                                            Corner a,
+                                            Corner b,
+                                            std::vector<TetCopy>& out) const {
+  if (!pinched(a.v) || !pinched(b.v)) {
+    static_cast<void>(ring(from, a, b, out));
+    return;
+  }
+  // Of an edge that ends on the axis the other end tells the copy.
+  if (on_axis(a.v)) std::swap(a, b);
+  std::vector<TetCopy> copies;
+  star(a.v, copies);
+  for (TetCopy c : copies) {
+    c.e = on_axis(a.v) ? 0 : rotations_.add(c.e, a.k);
     for (std::uint32_t i = 0; i < 4; ++i) {
-      if (tets_[t].v[i] != a.v) continue;
-      for (std::uint32_t j = 0; j < 4; ++j) {
-        if (j == i || tets_[t].v[j] != b.v) continue;
-        TetCopy c{t, 0};
-        if (!on_axis(a.v)) {
-          c.e = rotations_.subtract(a.k, tets_[t].k[i]);
-        } else if (!on_axis(b.v)) {
-          c.e = rotations_.subtract(b.k, tets_[t].k[j]);
-        }
-        if (corner(c, i) != a || corner(c, j) != b) continue;
-        if (std::find(out.begin(), out.end(), c) == out.end()) {
-          static_cast<void>(ring(c, a, b, out));
-        }
-      }
+      if (corner(c, i) == b) out.push_back(c);
     }
   }
 }
@@ -478,6 +518,8 @@ std::vector<TetId> QuotientTetrahedralization::compact_tets() {
   tets_ = std::move(tets);
   free_tets_.clear();
   epoch_ = 0;
+  for (auto& list : pinch_tets_) list.clear();
+  for (TetId t = 0; t < tets_.size() && !pinch_tets_.empty(); ++t) note_at_pinches(t);
   return order;
 }
 

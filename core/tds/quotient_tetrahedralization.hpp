@@ -20,7 +20,6 @@
 // treats such a face specially, exponents are composed. Source: [paper] sec. 3-5.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -112,6 +111,13 @@ class QuotientTetrahedralization {
   }
   [[nodiscard]] std::int32_t parent(VertexId v) const { return vertex(v).parent; }
   [[nodiscard]] bool on_axis(VertexId v) const { return vertex(v).on_axis; }
+  // Vertices at which the boundary touches itself, those along an edge where it does among them:
+  // their tetrahedra need not hang together by faces, yet star() and round_edge() find them all.
+  [[nodiscard]] bool pinched(VertexId v) const { return vertex(v).pinch >= 0; }
+  // Requires: v has no tetrahedra yet.
+  void set_pinched(VertexId v);
+  // Likewise of vertices that have. Cost: O(tetrahedra).
+  void set_pinched(std::span<const VertexId> vertices);
   // A tetrahedron with the vertex as a corner.
   [[nodiscard]] TetId tet_at(VertexId v) const { return vertex(v).tet; }
 
@@ -171,17 +177,6 @@ class QuotientTetrahedralization {
     return edges_.find(edge_key(a, b));
   }
 
-  // Segments along which the solid touches itself: round an edge of one there are several rows of
-  // tetrahedra that hang together by no face. No star is whole there: their vertices never move.
-  void set_pinched(std::int32_t segment) { pinched_.push_back(segment); }
-  [[nodiscard]] bool is_pinched(std::int32_t segment) const {
-    return std::find(pinched_.begin(), pinched_.end(), segment) != pinched_.end();
-  }
-  [[nodiscard]] bool is_fixed(VertexId v) const {
-    return kind(v) == SolidVertexKind::kInput ||
-           (kind(v) == SolidVertexKind::kSegment && is_pinched(parent(v)));
-  }
-
   // Replaces `removed` (each tetrahedron at most once) by `added`, which must fill the same space
   // in the same frame: links follow from the faces' canonical names, so that tetrahedra may meet
   // their own copies. The caller has checked orientation. Ids of the new tetrahedra: added_ids().
@@ -217,14 +212,16 @@ class QuotientTetrahedralization {
   // The tetrahedra at vertex copy (v, 0) in the universal cover; at an axis vertex every
   // tetrahedron once, at exponent 0 of its gauge. Appends nothing if v has none.
   void star(VertexId v, std::vector<TetCopy>& out) const;
+  // Of a pinched vertex those that hang together by faces with tet_at(v); of others all.
+  void fan(VertexId v, std::vector<TetCopy>& out) const;
   // The tetrahedra round edge (a, b), in order; `from` contains both. `closed` is false if the edge
   // lies on the boundary: then the row begins and ends at faces without neighbour. For an edge on
   // the axis one period of the ring.
   [[nodiscard]] bool ring(TetCopy from, Corner a, Corner b, std::vector<TetCopy>& out) const;
 
-  // All tetrahedra round the edge, row by row: as ring() but for edges of pinched segments.
-  // Cost there: O(tetrahedra).
-  void rings(TetCopy from, Corner a, Corner b, std::vector<TetCopy>& out) const;
+  // All tetrahedra at edge (a, b), also where they are several rows that touch there only; in no
+  // order. `from` contains both. For an edge on the axis one period.
+  void round_edge(TetCopy from, Corner a, Corner b, std::vector<TetCopy>& out) const;
 
   // Next visit mark for Tet::stamp.
   std::uint32_t new_epoch();
@@ -244,6 +241,7 @@ class QuotientTetrahedralization {
     Point3 point;
     TetId tet = std::numeric_limits<TetId>::max();
     std::int32_t parent = -1;
+    std::int32_t pinch = -1;  // of pinched vertices: index in pinch_tets_
     SolidVertexKind kind = SolidVertexKind::kFree;
     bool on_axis = false;
   };
@@ -277,6 +275,8 @@ class QuotientTetrahedralization {
   [[nodiscard]] std::uint64_t outline_hash(
       Corner a, Corner b, Corner c, std::int32_t facet, std::span<const EdgeKey> without) const;
   TetId take_slot();
+  [[nodiscard]] std::span<const TetId> tets_at_pinch(VertexId v) const;
+  void note_at_pinches(TetId t);
   void keep(TetId t) { trial_.tets.emplace_back(t, tets_[t]); }
   void keep(VertexId v) { trial_.vertices.emplace_back(v, vertices_[idx(v)]); }
   [[nodiscard]] std::vector<TetId> spatial_order() const;
@@ -286,7 +286,6 @@ class QuotientTetrahedralization {
   std::vector<Tet> tets_;
   std::vector<Vertex> vertices_;
   EdgeMap edges_;
-  std::vector<std::int32_t> pinched_;
   std::vector<TetId> free_tets_;
   std::vector<VertexId> free_vertices_;
   std::size_t live_tets_ = 0;
@@ -304,6 +303,10 @@ class QuotientTetrahedralization {
     std::vector<std::optional<VertexId>> free_vertices;
   };
   Trial trial_;
+
+  // Of each pinched vertex its tetrahedra, and others that once were: looked through when asked
+  // for.
+  mutable std::vector<std::vector<TetId>> pinch_tets_;
 
   // Of star(): the copy of each tetrahedron that was met first.
   struct Seen {

@@ -12,9 +12,9 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-// Classes of orbits that hang together, with the exponent of each relative to its root: a loop that
-// comes back at another exponent joins copies. A class of m loops' greatest common divisor with the
-// fold has that many pieces.
+// Classes of orbits (of vertices, of corners) that hang together, with the exponent of each
+// relative to its root: a loop that comes back at another exponent joins copies. A class of m
+// loops' greatest common divisor with the fold has that many pieces.
 class Pieces {
  public:
   Pieces(std::int32_t fold, std::size_t orbits)
@@ -37,13 +37,9 @@ class Pieces {
     if (all_copies) copies_[at(ra)] = 1;
   }
 
-  // Of the classes that `used` orbits belong to.
-  [[nodiscard]] std::int64_t count(const std::vector<char>& used) const {
-    std::int64_t sum = 0;
-    for (std::size_t i = 0; i < parent_.size(); ++i) {
-      if (used[i] != 0 && parent_[i] == static_cast<std::int32_t>(i)) sum += copies_[i];
-    }
-    return sum;
+  // Pieces of the class that i is the root of, 0: it is none.
+  [[nodiscard]] std::int64_t pieces(std::size_t i) const {
+    return parent_[i] == static_cast<std::int32_t>(i) ? copies_[i] : 0;
   }
 
  private:
@@ -71,29 +67,8 @@ class Pieces {
   std::vector<std::int32_t> copies_;    // of roots: pieces of the class
 };
 
-// Corners of triangles, joined over common edges.
-class Fans {
- public:
-  explicit Fans(std::size_t triangles) : parent_(3 * triangles) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  std::size_t root(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t i, std::size_t j) {
-    i = root(i);
-    j = root(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
-std::size_t corner_of(const OrbitEdgeUse& use, bool low_end) {
-  const auto side = static_cast<std::size_t>(use.side);
-  return 3 * at(use.triangle) + (use.forward == low_end ? side : (side + 1) % 3);
+std::int32_t corner_of(const OrbitEdgeUse& use, bool low_end) {
+  return 3 * use.triangle + (use.forward == low_end ? use.side : (use.side + 1) % 3);
 }
 
 void keep_different(std::vector<std::int32_t>& orbits) {
@@ -148,10 +123,21 @@ BoundaryTopology boundary_topology(std::int32_t fold,
                                    std::span<const OrbitTriangle> triangles) {
   BoundaryTopology result;
   const std::vector<OrbitEdgeUse> uses = sorted_edge_uses(fold, on_axis, triangles);
-  Pieces pieces(fold, on_axis.size());
-  Fans fans(triangles.size());
+  Pieces shells(fold, on_axis.size());
+  // Corners, joined over common edges: round a vertex on the axis a fan may close in one copy, or
+  // after all of them.
+  Pieces fans(fold, 3 * triangles.size());
   std::vector<char> used(on_axis.size(), 0), beside_pinch(on_axis.size(), 0);
   const auto is_axis = [&](std::int32_t orbit) { return fold > 1 && on_axis[at(orbit)] != 0; };
+  const auto exponent_at = [&](std::int32_t corner) {
+    return triangles[at(corner / 3)][at(corner % 3)].exponent;
+  };
+  const auto join_fans = [&](const OrbitEdgeUse& x, const OrbitEdgeUse& y, bool by_low) {
+    const std::int32_t turn = exponent_at(corner_of(x, by_low)) - exponent_at(corner_of(y, by_low));
+    for (const bool low : {true, false}) {
+      fans.join(corner_of(x, low), corner_of(y, low), turn, false);
+    }
+  };
   result.euler = static_cast<std::int64_t>(fold) * static_cast<std::int64_t>(triangles.size());
   for (std::size_t i = 0, next = 0; i < uses.size(); i = next) {
     const OrbitEdge& e = uses[i].edge;
@@ -160,41 +146,41 @@ BoundaryTopology boundary_topology(std::int32_t fold,
       forward += uses[next].forward ? 1 : -1;
     }
     const bool low_axis = is_axis(e.low), high_axis = is_axis(e.high);
-    // An edge that half a turn takes onto itself has half as many copies.
+    // Along the axis all copies of a triangle meet.
+    const bool axis = low_axis && high_axis;
+    // An edge that half a turn takes onto itself has half as many copies, and triangles of which
+    // one stands for two.
     const bool turns = fold > 1 && e.low == e.high && 2 * e.exponent == fold;
-    result.euler -= low_axis && high_axis ? 1 : turns ? fold / 2 : fold;
-    pieces.join(e.low, e.high, e.exponent, low_axis || high_axis);
+    result.euler -= axis ? 1 : turns ? fold / 2 : fold;
+    shells.join(e.low, e.high, e.exponent, low_axis || high_axis);
     used[at(e.low)] = used[at(e.high)] = 1;
-    // Along the axis, and across it, triangles are not all told: a copy stands for others.
-    if (next - i == 2) {
-      fans.join(corner_of(uses[i], true), corner_of(uses[i + 1], true));
-      fans.join(corner_of(uses[i], false), corner_of(uses[i + 1], false));
+    if (next - i == 2 && !axis && !turns) {
+      join_fans(uses[i], uses[i + 1], !low_axis);
     } else {
       beside_pinch[at(e.low)] = beside_pinch[at(e.high)] = 1;
     }
-    if ((low_axis && high_axis) || turns) continue;
+    if (turns) continue;
     if (forward != 0) ++result.open_edges;
-    if (next - i > 2) {
+    if (next - i > 2 || (axis && static_cast<std::size_t>(fold) * (next - i) > 2)) {
       ++result.pinched_edges;
       result.touching.insert(result.touching.end(), {e.low, e.high});
     }
   }
-  std::vector<std::int64_t> fan_of(on_axis.size(), -1);
+  std::vector<std::int64_t> fan_count(on_axis.size(), 0);
   for (std::size_t c = 0; c < 3 * triangles.size(); ++c) {
-    const std::int32_t orbit = triangles[c / 3][c % 3].orbit;
-    const auto root = static_cast<std::int64_t>(fans.root(c));
-    std::int64_t& first = fan_of[at(orbit)];
-    if (first < 0) first = root;
-    if (first != root && beside_pinch[at(orbit)] == 0) result.pinched_vertices.push_back(orbit);
+    fan_count[at(triangles[c / 3][c % 3].orbit)] += fans.pieces(c);
   }
-  keep_different(result.pinched_vertices);
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (used[i] == 0) continue;
+    const auto orbit = static_cast<std::int32_t>(i);
+    const std::int64_t copies = is_axis(orbit) ? 1 : fold;
+    result.euler += copies;
+    result.shells += shells.pieces(i);
+    if (fan_count[i] > copies && beside_pinch[i] == 0) result.pinched_vertices.push_back(orbit);
+  }
   result.touching.insert(result.touching.end(), result.pinched_vertices.begin(),
                          result.pinched_vertices.end());
   keep_different(result.touching);
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    if (used[i] != 0) result.euler += is_axis(static_cast<std::int32_t>(i)) ? 1 : fold;
-  }
-  result.shells = pieces.count(used);
   return result;
 }
 

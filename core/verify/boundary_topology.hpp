@@ -46,8 +46,8 @@ struct OrbitEdgeUse {
 struct BoundaryTopology {
   std::int64_t shells = 0;        // pieces that do not touch, of the whole
   std::int64_t euler = 0;         // vertices - edges + triangles, of the whole
-  std::size_t open_edges = 0;     // orbits of edges with an odd number of triangles, or all one way
-  std::size_t pinched_edges = 0;  // with more than two
+  std::size_t open_edges = 0;     // orbits of edges with more triangles that run one way
+  std::size_t pinched_edges = 0;  // orbits of edges with more than two; all copies count
   // Orbits of vertices whose triangles are not one fan and that no pinched edge explains.
   std::vector<std::int32_t> pinched_vertices;  // ascending
   std::vector<std::int32_t> touching;          // those, and the ends of pinched edges; ascending

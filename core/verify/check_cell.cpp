@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/rotation.hpp"
 #include "core/verify/cell_facets.hpp"
 
 namespace symcell {
@@ -29,6 +30,8 @@ std::size_t at(std::int32_t i) {
 // Facet i lies opposite corner i; its nodes run counter-clockwise seen from outside.
 constexpr std::int32_t kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 constexpr std::int32_t kSides[3][2] = {{1, 2}, {2, 0}, {0, 1}};
+// Of the volume of a box of an element's size.
+constexpr double kRoundingRel = 1e-12;
 
 class CellChecker {
  public:
@@ -39,7 +42,9 @@ class CellChecker {
         corners_(static_cast<std::size_t>(cell.dimension) + 1) {}
 
   Result<void> run() {
+    if (auto ok = check_fields(); !ok) return ok;
     if (auto ok = check_nodes(); !ok) return ok;
+    if (auto ok = check_orientation(); !ok) return ok;
     mark_surface();
     if (auto ok = gather_facets(); !ok) return ok;
     if (auto ok = check_bounds(); !ok) return ok;
@@ -51,6 +56,32 @@ class CellChecker {
  private:
   [[nodiscard]] const std::int32_t* element(std::size_t e) const {
     return &cell_.elements[e * corners_];
+  }
+
+  Result<void> check_fields() const {
+    const auto d = static_cast<std::size_t>(dimension_);
+    const std::size_t facets = cell_.facet_count(), elements = cell_.element_count();
+    const auto by_sector = [&](std::size_t size, std::size_t count) {
+      return size == 0 || size == count * static_cast<std::size_t>(cell_.fold);
+    };
+    const bool fit =
+        cell_.nodes_per_element == dimension_ + 1 && cell_.nodes_per_facet == dimension_ &&
+        cell_.fold >= 1 && cell_.elements.size() == elements * corners_ &&
+        cell_.regions.size() == elements && cell_.boundary.size() == facets * d &&
+        cell_.boundary_is_higher_image.size() == facets &&
+        cell_.on_axis.size() == cell_.orbit_points.size() &&
+        cell_.node_markers.size() == cell_.nodes.size() &&
+        cell_.lower_to_higher.size() == cell_.nodes.size() &&
+        cell_.lower_facets.size() == cell_.higher_facets.size() &&
+        cell_.lower_facets.size() % d == 0 && by_sector(cell_.sector_regions.size(), elements) &&
+        by_sector(cell_.sector_boundary_markers.size(), facets);
+    if (!fit) return broken("arrays that belong together differ in length");
+    for (const auto* list : {&cell_.boundary, &cell_.lower_facets, &cell_.higher_facets}) {
+      for (const std::int32_t n : *list) {
+        if (n < 0 || at(n) >= cell_.nodes.size()) return broken("a facet's node is none");
+      }
+    }
+    return {};
   }
 
   Result<void> check_nodes() {
@@ -81,6 +112,9 @@ class CellChecker {
       }
       if (own < 0) own = static_cast<std::int32_t>(n);
     }
+    if (std::find(first.begin(), first.end(), -1) != first.end()) {
+      return broken("an orbit has no node");
+    }
     return check_copies(std::move(copies));
   }
 
@@ -94,6 +128,30 @@ class CellChecker {
     std::sort(others.begin(), others.end());
     if (std::adjacent_find(others.begin(), others.end()) != others.end()) {
       return broken("two nodes are one copy of an orbit");
+    }
+    return {};
+  }
+
+  // Signs that rounding may decide are left alone.
+  Result<void> check_orientation() const {
+    const RotationTable rotations(cell_.fold);
+    std::vector<Point3> points;
+    points.reserve(cell_.nodes.size());
+    for (const OrbitVertex& v : cell_.nodes) {
+      const Point3 p = cell_.orbit_points[at(v.orbit)];
+      if (cell_.fold > 1 && cell_.on_axis[at(v.orbit)] != 0 && (p.x != 0 || p.y != 0)) {
+        return broken("orbit " + std::to_string(v.orbit) + " is not on the axis");
+      }
+      points.push_back(rotations.rotate(p, v.exponent));
+    }
+    for (std::size_t e = 0; e < cell_.element_count(); ++e) {
+      const std::int32_t* v = element(e);
+      const Point3 a = points[at(v[0])];
+      const Point3 p = points[at(v[1])] - a, q = points[at(v[2])] - a;
+      const Point3 r = dimension_ == 2 ? Point3{0, 0, 1} : points[at(v[3])] - a;
+      const double reach = length(p) * length(q) * length(r);
+      if (dot(cross(p, q), r) >= -kRoundingRel * reach) continue;
+      return broken("element " + std::to_string(e) + " is turned inside out");
     }
     return {};
   }
@@ -178,12 +236,11 @@ class CellChecker {
   }
 
   Result<void> check_bounds() {
-    if (cell_.lower_facets.size() != cell_.higher_facets.size() ||
-        cell_.lower_to_higher.size() != cell_.nodes.size()) {
-      return broken("the bounds have different numbers of facets");
-    }
     for (std::size_t i = 0; i < cell_.nodes.size(); ++i) {
       const std::int32_t image = cell_.lower_to_higher[i];
+      if (image < 0 && cell_.fold > 1 && cell_.on_axis[at(cell_.nodes[i].orbit)] != 0) {
+        return broken("node " + std::to_string(i) + " on the axis is not paired with itself");
+      }
       if (image >= 0 && !is_image(cell_.nodes[i], image)) {
         return broken("node " + std::to_string(i) + " is paired with what is not its image");
       }
@@ -224,15 +281,39 @@ class CellChecker {
     return v.orbit == w.orbit && (axis || w.exponent == (v.exponent + 1) % cell_.fold);
   }
 
-  // What is of no bound must be listed as boundary.
+  // Whether a facet has two elements; those without a node on the surface are not asked for.
+  [[nodiscard]] bool is_inner(const Nodes& sorted) const {
+    const std::uint64_t number = number_of(sorted);
+    const auto found =
+        std::lower_bound(inner_.begin(), inner_.end(), sorted, [&](std::size_t i, const Nodes& n) {
+          return std::tie(facets_[i].number, facets_[i].nodes) < std::tie(number, n);
+        });
+    return found != inner_.end() && facets_[*found].nodes == sorted;
+  }
+
+  // What is of no bound must be listed as boundary; what is listed may be inside, on a facet or
+  // segment of the model.
   Result<void> check_outer() {
+    std::vector<Nodes> listed;
     for (std::size_t i = 0; i < cell_.facet_count(); ++i) {
       Nodes n = nodes_of(cell_.boundary, i);
       sort_nodes(n, dimension_);
+      listed.push_back(n);
       const std::int64_t found = find_outer(n);
-      if (found < 0) continue;  // inside, on a facet or segment of the model
-      Role& role = role_[static_cast<std::size_t>(found)];
+      if (found < 0 && !is_inner(n)) {
+        return broken("the facet " + name_of(n) + " of the boundary is of no element");
+      }
+      Role none = Role::kNone;
+      Role& role = found < 0 ? none : role_[static_cast<std::size_t>(found)];
       if (role == Role::kNone) role = Role::kBoundary;
+      if ((role == Role::kHigher) != (cell_.boundary_is_higher_image[i] != 0)) {
+        return broken("the facet " + name_of(n) + " is wrongly marked as an image or not");
+      }
+    }
+    std::sort(listed.begin(), listed.end());
+    const auto twice = std::adjacent_find(listed.begin(), listed.end());
+    if (twice != listed.end()) {
+      return broken("the facet " + name_of(*twice) + " of the boundary is listed twice");
     }
     const auto open = std::find(role_.begin(), role_.end(), Role::kNone);
     if (open == role_.end()) return {};

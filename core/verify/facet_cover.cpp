@@ -12,9 +12,14 @@
 namespace symcell {
 namespace {
 
-// Facets are flat to this share of the model's diameter (kPlanarToleranceRel of validate_plc.hpp):
-// other triangles of one have another area by a strip of that width along its outline at most.
+// Facets are flat to this share of the model's diameter (kPlanarityToleranceRel of
+// validate_plc.hpp): other triangles of one have another area by a strip of that width along its
+// outline at most.
 constexpr double kFlatnessRel = 1e-7;
+// And bend by no more than that, of the diameter and of what they bend by as given; a vertex that
+// is moved within its facet a few times may leave that strip a little.
+constexpr double kBendRel = 10 * kFlatnessRel;
+constexpr double kBendFactor = 10;
 // Sums of rounded lengths and areas.
 constexpr double kRoundingRel = 1e-9;
 
@@ -139,10 +144,9 @@ class CoverMeter {
   }
 
   // A facet goes on over an edge that is on no segment, on its other side.
-  Result<void> check_inner(std::span<const OrbitEdgeUse> own) const {
-    const auto name = [&] {
-      return "facet " + std::to_string(c_.subfacets[at(own[0].triangle)].facet);
-    };
+  Result<void> check_inner(std::span<const OrbitEdgeUse> own) {
+    const std::int32_t own_facet = c_.subfacets[at(own[0].triangle)].facet;
+    const auto name = [&] { return "facet " + std::to_string(own_facet); };
     if (own.size() != 2) {
       return broken(name() + " has " + std::to_string(own.size()) +
                     " subfacets at an edge of no segment" + place(own[0]));
@@ -155,8 +159,14 @@ class CoverMeter {
                     place(own[0]));
     }
     const OrbitVertex third = seen_from(own[0], own[1]);
-    const Point3 a = lift(corner(own[0], 0)), b = lift(corner(own[0], 1));
-    const Point3 p = cross(b - a, lift(corner(own[0], 2)) - a), q = cross(b - a, lift(third) - a);
+    const Point3 a = lift(corner(own[0], 0)), b = lift(corner(own[0], 1)),
+                 c = lift(corner(own[0], 2)), d = lift(third);
+    const Point3 p = cross(b - a, c - a), q = cross(b - a, d - a);
+    // Each corner moves the volume by its way and the area opposite.
+    const double areas =
+        length(p) + length(q) + length(cross(c - a, d - a)) + length(cross(c - b, d - b));
+    double& bend = facet(own_facet).bend;
+    bend = std::max(bend, std::abs(dot(p, d - a)) / areas);
     if (dot(p, q) < 0) return {};
     return broken(name() + " folds at an edge" + place(own[0]));
   }
@@ -239,6 +249,12 @@ Result<void> compare_facet_covers(const FacetCover& wanted,
     return broken("facet " + std::to_string(f) + " has an area of " +
                   amounts(g.one_sided_area, w.one_sided_area) + " at the boundary and " +
                   amounts(g.two_sided_area, w.two_sided_area) + " inside");
+  }
+  for (std::size_t f = 0; f < found.facets.size(); ++f) {
+    const double given = f < wanted.facets.size() ? wanted.facets[f].bend : 0;
+    if (found.facets[f].bend <= kBendFactor * given + kBendRel * diameter) continue;
+    return broken("facet " + std::to_string(f) + " is bent by " +
+                  std::to_string(found.facets[f].bend));
   }
   for (const FacetCover::Incidence& n : found.incidences) {
     if (std::binary_search(wanted.incidences.begin(), wanted.incidences.end(), n)) continue;

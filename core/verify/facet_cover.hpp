@@ -6,7 +6,7 @@
 //   length of the subsegments on each segment;
 //   area of the subfacets on each facet, apart for those with the solid on one side and on both;
 //   subfacets of a facet that meet at an edge: as many as at its segments, elsewhere two, on
-//   different sides of the edge;
+//   different sides of the edge and in one plane;
 //   shells, Euler characteristic and pinches of the boundary.
 // Subfacets that hang together without folds, end at all of a facet's outline and nowhere else, and
 // have its area, fill it once. If then all tetrahedra are positive and a face has two of them but
@@ -49,6 +49,8 @@ struct FacetCover {
     double one_sided_area = 0;
     double two_sided_area = 0;
     double outline = 0;  // length of edges with one subfacet of the facet
+    // By what the corners of two subfacets that adjoin must move to lie in one plane, at most.
+    double bend = 0;
   };
   // Subfacets of one facet at a subsegment.
   struct Incidence {

@@ -42,10 +42,11 @@ std::optional<fs::path> FaultArchive::keep(std::string_view name,
                                            const fs::path& model,
                                            std::string_view options,
                                            const Error& error) const noexcept {
+  fs::path target;
   try {
     const std::uintmax_t size = fs::file_size(model);
     if (size > most_bytes_) return std::nullopt;
-    const fs::path target = folder_ / name;
+    target = folder_ / name;
     fs::create_directories(folder_);
     fs::permissions(folder_, fs::perms::owner_all);
     fs::remove_all(target);
@@ -61,6 +62,9 @@ std::optional<fs::path> FaultArchive::keep(std::string_view name,
     file.keep();
     return target;
   } catch (...) {
+    // No halves.
+    std::error_code ignored;
+    if (!target.empty()) fs::remove_all(target, ignored);
     return std::nullopt;
   }
 }

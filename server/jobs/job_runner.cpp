@@ -146,7 +146,9 @@ void JobRunner::run_next() {
 // Whoever deletes a job leaves its files to the worker that still holds it; by now nobody does.
 void JobRunner::remove_files_if_deleted(const std::string& id) {
   try {
-    if (!parts_.store.find(id)) parts_.files.remove(id);
+    if (parts_.store.find(id)) return;
+    parts_.files.remove(id);
+    parts_.faults.remove(id);
   } catch (const std::exception& exception) {
     parts_.logger.error("job_bookkeeping_failed", {{"job", id}, {"what", exception.what()}});
   }

@@ -9,22 +9,17 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-CHECKER = ROOT.parent / "shared" / "tools" / "meshcheck.py"
+from random_runs import CHECKER, SKIPPED, skip_reason
+
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--writer", required=True)
     options = parser.parse_args()
-    try:
-        import numpy, scipy  # noqa: F401  the checker's
-    except ImportError as error:
-        print(f"SKIPPED: {error}")
-        return 77
-    if not CHECKER.exists():
-        print("SKIPPED: ../shared is absent")
-        return 77
+    if reason := skip_reason():
+        print(f"SKIPPED: {reason}")
+        return SKIPPED
     failed = 0
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)

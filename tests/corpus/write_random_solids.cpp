@@ -57,9 +57,9 @@ int run(const std::string& directory,
       write_companion(base, model.fold, model.volume, model.description);
       continue;
     }
-    if (kind != "bodies" && kind != "layers") return 2;
+    if (kind != "bodies" && kind != "layers" && kind != "tabs") return 2;
     const test::RandomPlc model =
-        kind == "layers" ? test::make_random_layers(seed, options) : test::make_random_plc(seed);
+        kind == "bodies" ? test::make_random_plc(seed) : test::make_random_layers(seed, options);
     test::write_file(base + ".json", write_plc_json(model.plc));
     write_companion(base, model.fold, model.volume, model.description);
   }

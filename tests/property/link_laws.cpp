@@ -173,12 +173,16 @@ class LinkLaws {
     return text.str();
   }
 
+  // An edge may run over the ends of several pieces of one straight pinch.
   [[nodiscard]] bool pinched(const Edge& e) const {
-    return std::any_of(
-        model_.pinches.edges.begin(), model_.pinches.edges.end(), [&](const auto& pinch) {
-          return distance_to_segment(at(e.first), pinch[0], pinch[1]) <= tolerance() &&
-                 distance_to_segment(at(e.second), pinch[0], pinch[1]) <= tolerance();
-        });
+    const auto on_pinch = [&](Point3 p) {
+      return std::any_of(model_.pinches.edges.begin(), model_.pinches.edges.end(),
+                         [&](const auto& pinch) {
+                           return distance_to_segment(p, pinch[0], pinch[1]) <= tolerance();
+                         });
+    };
+    const Point3 a = at(e.first), b = at(e.second);
+    return on_pinch(a) && on_pinch(b) && on_pinch(0.5 * (a + b));
   }
   [[nodiscard]] bool pinched(std::int64_t node) const {
     return pinched(Edge{node, node}) ||

@@ -90,9 +90,11 @@ class PlcMaker {
   static Side side(const SheetFace& f, std::size_t i) {
     return std::minmax({f.corners[i], f.corners[(i + 1) % f.corners.size()]});
   }
-  // Facets may not pass through each other: where four faces meet, walls end.
+  // Facets may not pass through each other: where four faces meet, walls end. If nothing may end
+  // inside a facet, all do where three meet.
   [[nodiscard]] bool crossed(const SheetFace& f, std::size_t i, bool level) const {
-    return !level && uses_.at(side(f, i)) > 3;
+    const int uses = uses_.at(side(f, i));
+    return (!level && uses > 3) || (!options_.touching && uses > 2);
   }
 
   // Some of the sides within a facet stay, as segments within it.

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/delaunay/solid_editor.hpp"
@@ -33,6 +34,54 @@ inline double quotient_volume(const QuotientTetrahedralization& mesh) {
   if (!report) return false;
   EXPECT_NEAR(report->volume, volume, 1e-9 * volume);
   return std::abs(report->volume - volume) <= 1e-9 * volume;
+}
+
+// Inserts p, of the kind that its place asks for; kNoVertex if it is refused.
+inline VertexId insert_point(SolidEditor& editor, const SolidLocation& where, Point3 p) {
+  const QuotientTetrahedralization& mesh = editor.mesh();
+  SolidCavity cavity;
+  if (!editor.find_cavity(p, where, cavity)) return SolidEditor::kNoVertex;
+  SolidVertexKind kind = SolidVertexKind::kFree;
+  std::int32_t parent = -1;
+  bool axis = false;
+  if (where.kind == SolidLocation::Kind::kOnSubfacet) {
+    kind = SolidVertexKind::kFacet;
+    parent = mesh.tet(where.at.t).facet[where.face];
+  } else if (where.kind == SolidLocation::Kind::kOnEdge) {
+    parent = mesh.segment_of(where.edge[0], where.edge[1]);
+    axis = mesh.on_axis(where.edge[0].v) && mesh.on_axis(where.edge[1].v);
+    kind = SolidVertexKind::kSegment;
+    if (parent == kNoSegment) {
+      kind = cavity.outline.empty() ? SolidVertexKind::kFree : SolidVertexKind::kFacet;
+      parent = cavity.outline.empty() ? -1 : cavity.outline.front().facet;
+    }
+  }
+  return editor.insert(cavity, kind, parent, axis);
+}
+
+inline std::vector<TetId> live_tets(const QuotientTetrahedralization& mesh) {
+  std::vector<TetId> all;
+  for (TetId t = 0; t < mesh.tet_slots(); ++t) {
+    if (mesh.alive(t)) all.push_back(t);
+  }
+  return all;
+}
+
+// The place and the point in the middle of a face.
+inline std::pair<SolidLocation, Point3> middle_of_face(const QuotientTetrahedralization& mesh,
+                                                       TetId t,
+                                                       std::uint32_t face) {
+  Point3 p;
+  for (const std::uint32_t k : kFaceCorners[face]) p = p + mesh.corner_point(t, k);
+  return {{SolidLocation::Kind::kOnSubfacet, {t, 0}, face, {}}, (1.0 / 3) * p};
+}
+
+// Of an edge.
+inline std::pair<SolidLocation, Point3> middle_of_edge(const QuotientTetrahedralization& mesh,
+                                                       TetId t,
+                                                       std::size_t edge) {
+  const Corner a = mesh.corner(t, kEdgeCorners[edge][0]), b = mesh.corner(t, kEdgeCorners[edge][1]);
+  return {{SolidLocation::Kind::kOnEdge, {t, 0}, 0, {a, b}}, 0.5 * (mesh.lift(a) + mesh.lift(b))};
 }
 
 // Equal for meshes that are the same slot by slot; free slots count for nothing.

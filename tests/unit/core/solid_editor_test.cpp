@@ -32,26 +32,7 @@ class SolidEditorFold : public testing::TestWithParam<std::int32_t> {
   // Whether the point went in; either way the mesh is sound, and as before if it did not.
   bool insert(const SolidLocation& where, Point3 p) {
     const auto before = test::fingerprint(mesh());
-    SolidCavity cavity;
-    VertexId v = SolidEditor::kNoVertex;
-    if (editor_.find_cavity(p, where, cavity)) {
-      SolidVertexKind kind = SolidVertexKind::kFree;
-      std::int32_t parent = -1;
-      bool axis = false;
-      if (where.kind == Kind::kOnSubfacet) {
-        kind = SolidVertexKind::kFacet;
-        parent = mesh().tet(where.at.t).facet[where.face];
-      } else if (where.kind == Kind::kOnEdge) {
-        parent = mesh().segment_of(where.edge[0], where.edge[1]);
-        axis = mesh().on_axis(where.edge[0].v) && mesh().on_axis(where.edge[1].v);
-        kind = SolidVertexKind::kSegment;
-        if (parent == kNoSegment) {
-          kind = cavity.outline.empty() ? SolidVertexKind::kFree : SolidVertexKind::kFacet;
-          parent = cavity.outline.empty() ? -1 : cavity.outline.front().facet;
-        }
-      }
-      v = editor_.insert(cavity, kind, parent, axis);
-    }
+    const VertexId v = test::insert_point(editor_, where, p);
     if (v == SolidEditor::kNoVertex) {
       EXPECT_EQ(before, test::fingerprint(mesh()));
       return false;
@@ -63,14 +44,7 @@ class SolidEditorFold : public testing::TestWithParam<std::int32_t> {
     return true;
   }
 
-  // Every tetrahedron that is there now.
-  std::vector<TetId> tets() {
-    std::vector<TetId> all;
-    for (TetId t = 0; t < mesh().tet_slots(); ++t) {
-      if (mesh().alive(t)) all.push_back(t);
-    }
-    return all;
-  }
+  std::vector<TetId> tets() { return test::live_tets(mesh()); }
 
   // Whether no subfacet and no segment holds the edge.
   bool is_inner(TetId t, Corner a, Corner b) {

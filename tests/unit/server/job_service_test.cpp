@@ -82,6 +82,39 @@ TEST_F(JobServiceTest, ErrorsOfTheEngineBecomeProblemDocuments) {
   EXPECT_EQ(problem["errors"][0]["pointer"], "/model/segments/3");
 }
 
+TEST_F(JobServiceTest, TheModelOfAnInternalErrorIsKeptUntilTheJobIsDeleted) {
+  service_.engine.fail_with({ErrorCode::kInternal, "mesh check 'facets': facet 3", {}, {}});
+  const std::string id = service_.submit().job.id;
+  ASSERT_TRUE(service_.reaches(id, JobState::kFailed));
+  const auto kept = service_.jobs->files().faults() / id;
+  EXPECT_EQ(symcell::test::read_file(kept / "model"), square_json());
+  const auto request = nlohmann::json::parse(symcell::test::read_file(kept / "request.json"));
+  EXPECT_EQ(request["error"]["detail"], "mesh check 'facets': facet 3");
+  EXPECT_TRUE(request["options"].is_object());
+  EXPECT_TRUE(service_.jobs->erase(id));
+  EXPECT_FALSE(std::filesystem::exists(kept));
+}
+
+TEST_F(JobServiceTest, ErrorsOfTheModelLeaveNoCase) {
+  service_.engine.fail_with({ErrorCode::kSelfIntersection, "segments 3 and 7 cross", {3, 7}, {}});
+  const std::string id = service_.submit().job.id;
+  ASSERT_TRUE(service_.reaches(id, JobState::kFailed));
+  EXPECT_FALSE(std::filesystem::exists(service_.jobs->files().faults() / id));
+}
+
+// The worker still holds the job and meets the error afterwards.
+TEST_F(JobServiceTest, AJobDeletedWhileItRunsLeavesNoCase) {
+  service_.engine.ignore_cancel();
+  service_.engine.fail_with({ErrorCode::kInternal, "too late", {}, {}});
+  const std::string id = occupy_worker();
+  EXPECT_TRUE(service_.jobs->erase(id));
+  service_.engine.open_gate();
+  const auto folder = service_.jobs->files().model(id).parent_path();
+  EXPECT_TRUE(eventually([&] { return !std::filesystem::exists(folder); }));
+  EXPECT_TRUE(
+      eventually([&] { return !std::filesystem::exists(service_.jobs->files().faults() / id); }));
+}
+
 TEST_F(JobServiceTest, AnEngineThatThrowsFailsItsJobOnly) {
   service_.engine.throw_from_now_on();
   const std::string id = service_.submit().job.id;
