@@ -31,8 +31,8 @@ Pslg two_rooms() {
   return builder.pslg();
 }
 
-std::vector<test::Sample> samples() {
-  std::vector<test::Sample> all;
+std::vector<test::QuotientSample> samples() {
+  std::vector<test::QuotientSample> all;
   all.push_back(test::triangulated(two_rooms(), 1));
   for (const std::int32_t fold : {1, 2, 3, 6}) {
     all.push_back(test::triangulated(star(6, 2, 0.8), fold));
@@ -68,7 +68,7 @@ TEST(SegmentCover, TellsLengthsAreaAndEulerCharacteristic) {
 }
 
 TEST(SegmentCover, RefinementChangesNothing) {
-  for (test::Sample& sample : samples()) {
+  for (test::QuotientSample& sample : samples()) {
     const SegmentCover wanted = measure_segment_cover(sample.mesh());
     EXPECT_EQ(fault(wanted, wanted), "");
     MeshOptions options;
@@ -87,7 +87,7 @@ TEST(SegmentCover, RefinementChangesNothing) {
 
 TEST(SegmentCover, FindsDamage) {
   int moved = 0;
-  for (test::Sample& sample : samples()) {
+  for (test::QuotientSample& sample : samples()) {
     const SegmentCover wanted = measure_segment_cover(sample.mesh());
     // A vertex elsewhere.
     for (std::size_t i = 0; i < sample.mesh().vertex_slots(); ++i) {
@@ -126,7 +126,7 @@ TEST(SegmentCover, FindsDamage) {
 
 // Triangles and subsegments that are gone, or there twice.
 TEST(SegmentCover, FindsTrianglesAndSubsegmentsThatAreGone) {
-  for (test::Sample& sample : samples()) {
+  for (test::QuotientSample& sample : samples()) {
     const SegmentCover wanted = measure_segment_cover(sample.mesh());
     for (const TriangleId t : test::live_triangles(sample.mesh())) {
       QuotientTriangulation mesh = sample.mesh();
