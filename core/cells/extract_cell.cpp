@@ -64,12 +64,14 @@ class CellCutter {
   }
 
   // Ends of the components' rings, and the wedges at boundary vertices. Boundary loops that wind
-  // about the centre have the domain on their left: counter-clockwise ones are outer ends.
+  // about the centre have the domain on their left: counter-clockwise ones are outer ends. One that
+  // comes through the centre goes round it within the domain.
   void find_boundary() {
     inner_.resize(seeds_.size());
     outer_.resize(seeds_.size());
     std::vector<std::uint8_t> seen(3 * mesh_.triangle_slots(), 0);
     std::vector<VertexId> loop;
+    const VertexId o = mesh_.centre();
     for (HalfEdge h = 0; h < seen.size(); ++h) {
       if (!mesh_.alive(triangle_of(h)) ||
           mesh_.triangle(triangle_of(h)).nb[local_of(h)] != kNoHalfEdge) {
@@ -85,7 +87,10 @@ class CellCutter {
         const Triangle& t = mesh_.triangle(triangle_of(at));
         const std::uint32_t j = local_of(at);
         const Point2 a = mesh_.corner_point(t, next3(j)), b = mesh_.corner_point(t, prev3(j));
-        winding += std::atan2(cross(a, b), dot(a, b));
+        if (t.v[next3(j)] != o && t.v[prev3(j)] != o) {
+          winding += std::atan2(cross(a, b), dot(a, b));
+        }
+        if (t.v[prev3(j)] == o) winding -= angle_of_wedge(at);
         loop.push_back(t.v[next3(j)]);
       }
       // A loop winds by a multiple of 2 pi / n.
@@ -96,12 +101,25 @@ class CellCutter {
       end.insert(end.end(), loop.begin(), loop.end());
     }
     std::sort(wedges_.begin(), wedges_.end());
-    const VertexId o = mesh_.centre();
     if (o < 0) return;
     StarItem item = star_item(mesh_, mesh_.corner_of(o));
     if (!to_star_begin(mesh_, item)) {
       inner_[static_cast<std::size_t>(component_[item.t])].push_back(o);
     }
+  }
+
+  // Between this boundary half-edge and the next, at the vertex where it ends.
+  [[nodiscard]] double angle_of_wedge(HalfEdge h) const {
+    StarItem item{triangle_of(h), prev3(local_of(h)), 0};
+    double sum = 0;
+    do {
+      const Triangle& t = mesh_.triangle(item.t);
+      const Point2 x = mesh_.corner_point(t, item.i);
+      const Point2 u = mesh_.corner_point(t, next3(item.i)) - x;
+      const Point2 v = mesh_.corner_point(t, prev3(item.i)) - x;
+      sum += std::atan2(cross(u, v), dot(u, v));
+    } while (rotate_cw(mesh_, item));
+    return sum;
   }
 
   // The boundary half-edge that starts where this one ends.

@@ -170,12 +170,13 @@ void check_links(const FacetedMesh& mesh,
   nodes.report(checks, tag + ".vertex_links", counted(places.size()));
   if (mesh.mesh.dimension == 2) return;
   Flaws edges;
-  for (const auto& [a, b] : found.edges) {
-    const Point3 p = mesh.point(a), q = mesh.point(b);
+  for (const std::array<std::int32_t, 2>& ends : found.edges) {
+    const Point3 p = mesh.point(ends[0]), q = mesh.point(ends[1]);
     const bool excuse = excused.on_edge(p) && excused.on_edge(0.5 * (p + q)) && excused.on_edge(q);
     if (excuse) continue;
     edges.note([&] {
-      return "the elements round " + facet_name({a, b, -1}) + " do not hang together by faces";
+      return "the elements round " + facet_name({ends[0], ends[1], -1}) +
+             " do not hang together by faces";
     });
   }
   edges.report(checks, tag + ".edge_links", counted(found.edges.size()));
