@@ -1,4 +1,5 @@
-# Sourced by run.sh, test.sh, .ci/run and .ci/nightly: what to install on Debian 12, and a function that does so.
+# Sourced by run.sh, test.sh, .ci/run and .ci/nightly: what to install on Debian 12, and a function
+# that does so.
 # Where every package is there already, apt is not called.
 
 # What the build looks for with find_package; the tests are part of it, hence GoogleTest.

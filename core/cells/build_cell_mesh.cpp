@@ -6,6 +6,8 @@
 #include <limits>
 #include <unordered_map>
 
+#include "core/cells/pair_images.hpp"
+
 namespace symcell {
 namespace {
 
@@ -190,28 +192,8 @@ class CellMeshBuilder {
       const std::int32_t c = find_node(mesh_.centre(), 0);
       out_.lower_to_higher[static_cast<std::size_t>(c)] = c;
     }
-    pair_pinched_nodes();
+    pair_beyond_bounds(out_);
     share_markers();
-  }
-
-  // Where the model pinches, two nodes of the cell can be images without an edge of the bounds.
-  void pair_pinched_nodes() {
-    for (std::size_t v = 0; v < orbit_.size(); ++v) {
-      const auto id = static_cast<VertexId>(v);
-      if (orbit_[v] < 0 || id == mesh_.centre()) continue;
-      const auto n = static_cast<std::size_t>(first_node_[v]);
-      const std::int32_t e = out_.nodes[n].exponent;
-      pair(n, find_node(id, mesh_.add(e, 1)));
-      const std::int32_t down = find_node(id, mesh_.subtract(e, 1));
-      if (down >= 0) pair(static_cast<std::size_t>(down), first_node_[v]);
-    }
-  }
-  void pair(std::size_t node, std::int32_t image) {
-    if (image < 0 || out_.lower_to_higher[node] >= 0) return;
-    // n = 2: each is the other's image, only one of them is marked.
-    const std::int32_t back = out_.lower_to_higher[static_cast<std::size_t>(image)];
-    if (mesh_.fold() == 2 && back >= 0) return;
-    out_.lower_to_higher[node] = image;
   }
 
   // Nodes of one orbit carry one marker.

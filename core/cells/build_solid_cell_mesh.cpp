@@ -3,6 +3,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/cells/pair_images.hpp"
 #include "core/cells/sector_regions.hpp"
 #include "core/cells/solid_cell.hpp"
 
@@ -155,26 +156,9 @@ class SolidCellBuilder {
     for (std::size_t v = 0; v < orbit_.size(); ++v) {
       if (orbit_[v] < 0) continue;
       const auto id = static_cast<VertexId>(v);
-      if (mesh_.on_axis(id)) {
-        out_.lower_to_higher[idx(first_node_[v])] = first_node_[v];
-      } else {
-        pair_beyond_bounds(id);
-      }
+      if (mesh_.on_axis(id)) out_.lower_to_higher[idx(first_node_[v])] = first_node_[v];
     }
-  }
-
-  // Where the model pinches, two nodes of the cell can be images without a face of the bounds.
-  void pair_beyond_bounds(VertexId v) {
-    const std::int32_t first = first_node_[idx(v)];
-    const std::int32_t e = out_.nodes[idx(first)].exponent;
-    pair(first, find_node({v, mesh_.add(e, 1)}));
-    pair(find_node({v, mesh_.subtract(e, 1)}), first);
-  }
-  void pair(std::int32_t node, std::int32_t image) {
-    if (node < 0 || image < 0 || out_.lower_to_higher[idx(node)] >= 0) return;
-    // n = 2: each is the other's image, only one of them is marked.
-    if (mesh_.fold() == 2 && out_.lower_to_higher[idx(image)] >= 0) return;
-    out_.lower_to_higher[idx(node)] = image;
+    pair_beyond_bounds(out_);
   }
 
   // Nodes of one orbit carry one marker.

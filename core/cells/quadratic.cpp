@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/base/assert.hpp"
+#include "core/cells/pair_images.hpp"
 
 namespace symcell {
 namespace {
@@ -208,26 +209,7 @@ class Elevation {
       const auto orbit = static_cast<std::size_t>(result_.nodes[i].orbit);
       if (result_.on_axis[orbit] != 0) result_.lower_to_higher[i] = static_cast<std::int32_t>(i);
     }
-    pair_beyond_bounds();
-  }
-
-  // Where a solid touches itself along an edge, two mid nodes of the cell can be images without a
-  // face of the bounds, as its ends can. The nodes of an orbit follow each other, by exponents.
-  void pair_beyond_bounds() {
-    for (std::size_t i = mesh_.nodes.size(), next = i; i < result_.nodes.size(); i = next) {
-      while (next < result_.nodes.size() && result_.nodes[next].orbit == result_.nodes[i].orbit) {
-        ++next;
-      }
-      for (std::size_t a = i; a < next && next - i > 1; ++a) {
-        const std::size_t b = a + 1 < next ? a + 1 : i;
-        if (rotations_.subtract(result_.nodes[b].exponent, result_.nodes[a].exponent) != 1)
-          continue;
-        if (result_.lower_to_higher[a] >= 0) continue;
-        // n = 2: each is the other's image, only one of them is marked.
-        if (mesh_.fold == 2 && result_.lower_to_higher[b] >= 0) continue;
-        result_.lower_to_higher[a] = static_cast<std::int32_t>(b);
-      }
-    }
+    pair_beyond_bounds(result_);
   }
 
   const SymmetryCellMesh& mesh_;

@@ -2,6 +2,7 @@
 
 #include "core/cells/build_cell_mesh.hpp"
 #include "core/cells/full_mesh.hpp"
+#include "core/cells/pair_images.hpp"
 #include "tests/unit/core/quotient_samples.hpp"
 
 namespace symcell {
@@ -90,6 +91,24 @@ TEST(FullMeshView, NumbersEveryNodeAndElementOnce) {
     EXPECT_EQ(*ids.begin(), 0);
     EXPECT_EQ(*ids.rbegin(), full.node_count() - 1);
   }
+}
+
+// Nodes of one orbit that no facet of a bound pairs: images of each other, or too far apart.
+TEST(PairBeyondBounds, NodesOneStepApart) {
+  SymmetryCellMesh cell;
+  cell.fold = 5;
+  cell.orbit_points.resize(3);
+  cell.on_axis = {0, 0, 1};
+  cell.nodes = {{0, 4}, {1, 0}, {0, 0}, {2, 0}, {0, 2}, {1, 2}, {0, 3}};
+  cell.lower_to_higher.assign(cell.nodes.size(), -1);
+  pair_beyond_bounds(cell);
+  EXPECT_EQ(cell.lower_to_higher, (std::vector<std::int32_t>{2, -1, -1, -1, 6, -1, 0}));
+  // Each is the other's image: one of them is the lower one.
+  cell.fold = 2;
+  cell.nodes = {{0, 1}, {1, 0}, {0, 0}};
+  cell.lower_to_higher.assign(cell.nodes.size(), -1);
+  pair_beyond_bounds(cell);
+  EXPECT_EQ(cell.lower_to_higher, (std::vector<std::int32_t>{2, -1, -1}));
 }
 
 }  // namespace
