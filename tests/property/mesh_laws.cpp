@@ -330,14 +330,15 @@ class LawChecker {
     }
   }
 
+  // Exactly: a point on an edge is in the triangles beside it.
   [[nodiscard]] std::size_t triangle_at(Point2 x) const {
+    const auto on_left = [&](Point2 a, Point2 b) {
+      return orientation(a, b, x) != Sign::kNegative;
+    };
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      const auto& [a, b, c] = mesh_.triangles[t];
-      if (cross(mesh_.at(b) - mesh_.at(a), x - mesh_.at(a)) >= 0 &&
-          cross(mesh_.at(c) - mesh_.at(b), x - mesh_.at(b)) >= 0 &&
-          cross(mesh_.at(a) - mesh_.at(c), x - mesh_.at(c)) >= 0) {
-        return t;
-      }
+      const auto& [i, j, k] = mesh_.triangles[t];
+      const Point2 a = mesh_.at(i), b = mesh_.at(j), c = mesh_.at(k);
+      if (on_left(a, b) && on_left(b, c) && on_left(c, a)) return t;
     }
     return kNone;
   }
