@@ -10,6 +10,7 @@
 #include "core/surface/mend_surface.hpp"
 #include "core/surface/self_intersections.hpp"
 #include "core/surface/shells.hpp"
+#include "core/surface/surface_distance.hpp"
 #include "core/surface/t_junctions.hpp"
 #include "core/surface/weld.hpp"
 
@@ -50,8 +51,8 @@ std::vector<OpenEdge> open_edges(const IndexedSurface& surface) {
 
 class Cleaner {
  public:
-  Cleaner(const TriangleSurface& input, ExecutionContext& context)
-      : input_(input), context_(context) {}
+  Cleaner(const TriangleSurface& input, ExecutionContext& context, double tolerance_rel)
+      : input_(input), context_(context), tolerance_rel_(tolerance_rel) {}
 
   Result<CleanSurface> run() {
     if (auto ok = check_input(); !ok) return tl::unexpected<Error>(ok.error());
@@ -247,7 +248,8 @@ class Cleaner {
     return {};
   }
 
-  // Takes the mended surface if nothing is wrong with it and its volume is that of before.
+  // Takes the mended surface if nothing is wrong with it, and its volume and places are those of
+  // before.
   Result<bool> mend(std::size_t count) {
     std::optional<IndexedSurface> mended = mend_intersections(surface());
     if (!mended) return false;
@@ -259,6 +261,8 @@ class Cleaner {
     auto left = self_intersections(*mended, 1, context_);
     if (!left) return tl::unexpected<Error>(left.error());
     if (!left->empty()) return false;
+    // What lies between shells that overlap may be filled, or cut away.
+    if (!are_near(surface(), *mended, tolerance_rel_ * result_.diameter)) return false;
     result_.repairs.push_back(plural(count, "pair") + " of intersecting triangles mended, volume " +
                               "changed by " + describe_rounded(after - before));
     surface() = std::move(*mended);
@@ -267,13 +271,16 @@ class Cleaner {
 
   const TriangleSurface& input_;
   ExecutionContext& context_;
+  double tolerance_rel_;
   CleanSurface result_;
 };
 
 }  // namespace
 
-Result<CleanSurface> clean_surface(const TriangleSurface& input, ExecutionContext& context) {
-  return Cleaner(input, context).run();
+Result<CleanSurface> clean_surface(const TriangleSurface& input,
+                                   ExecutionContext& context,
+                                   double tolerance_rel) {
+  return Cleaner(input, context, tolerance_rel).run();
 }
 
 }  // namespace symcell

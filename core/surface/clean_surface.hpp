@@ -9,6 +9,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/execution_context.hpp"
+#include "core/model/mesh_options.hpp"
 #include "core/model/triangle_surface.hpp"
 #include "core/surface/indexed_surface.hpp"
 
@@ -27,9 +28,12 @@ struct CleanSurface {
   Box3 box;
 };
 
+// `tolerance_rel`: of the diameter; mending moves the surface by no more.
 // Errors: kEmptyFile (no triangles), kIndexOutOfRange, kNonFinite, kCoordinateRange,
 // kDegenerateGeometry (all in one point), limits. What can be inspected is a `problem` instead.
-[[nodiscard]] Result<CleanSurface> clean_surface(const TriangleSurface& input,
-                                                 ExecutionContext& context);
+[[nodiscard]] Result<CleanSurface> clean_surface(
+    const TriangleSurface& input,
+    ExecutionContext& context,
+    double tolerance_rel = kSurfaceSymmetryToleranceRel);
 
 }  // namespace symcell

@@ -16,6 +16,7 @@ target_sources(symcell_core PRIVATE
   surface/surface_edits.cpp
   surface/t_junctions.cpp
   surface/triangle_tree.cpp
+  surface/surface_distance.cpp
   surface/weld.cpp
   symmetry/cut_curves.cpp
   symmetry/detect_surface_symmetry.cpp

@@ -14,6 +14,7 @@
 #include "core/surface/narrow_corners.hpp"
 #include "core/surface/planar_patches.hpp"
 #include "core/surface/self_intersections.hpp"
+#include "core/surface/surface_distance.hpp"
 #include "core/symmetry/glue_cuts.hpp"
 #include "core/symmetry/quotient_to_sector.hpp"
 #include "core/symmetry/wedge_cut.hpp"
@@ -94,23 +95,6 @@ IndexedSurface restored_sector(const QuotientSurface& s) {
     flat.triangles.push_back(corners);
   }
   return flat;
-}
-
-// Corners and middles of the triangles and their sides, near ones after each other.
-std::vector<Point3> samples_of(const IndexedSurface& surface) {
-  std::vector<Point3> samples = surface.points;
-  samples.reserve(samples.size() + 5 * surface.triangles.size() / 2);
-  for (const Triangle& t : surface.triangles) {
-    const std::array<Point3, 3> p = {surface.points[t[0]], surface.points[t[1]],
-                                     surface.points[t[2]]};
-    samples.push_back((1.0 / 3) * (p[0] + p[1] + p[2]));
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t j = (i + 1) % 3;
-      if (t[i] < t[j]) samples.push_back(0.5 * (p[i] + p[j]));  // from one of two triangles
-    }
-  }
-  sort_along_hilbert_curve(samples);
-  return samples;
 }
 
 struct PatchFigures {

@@ -9,20 +9,22 @@ namespace symcell {
 Result<std::unique_ptr<SectorSource>> symmetrise_surface(const TriangleSurface& surface,
                                                          const MeshOptions& options,
                                                          ExecutionContext& context) {
-  auto clean = clean_surface(surface, context);
+  const double tolerance_rel =
+      options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel);
+  auto clean = clean_surface(surface, context, tolerance_rel);
   if (!clean) return tl::unexpected<Error>(clean.error());
   if (clean->problem) return tl::unexpected<Error>(*clean->problem);
   auto symmetry = detect_surface_symmetry(*clean, options, context);
   if (!symmetry) return tl::unexpected<Error>(symmetry.error());
-  const double tolerance =
-      options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel) * clean->diameter;
+  const double tolerance = tolerance_rel * clean->diameter;
   return std::make_unique<SurfaceSectorSource>(std::move(*clean), symmetry->symmetry, tolerance);
 }
 
 Result<SolidInspection> inspect_surface(const TriangleSurface& surface,
                                         const MeshOptions& options,
                                         ExecutionContext& context) {
-  auto clean = clean_surface(surface, context);
+  auto clean = clean_surface(surface, context,
+                             options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel));
   if (!clean) return tl::unexpected<Error>(clean.error());
   SolidInspection result;
   result.kind = "surface";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <string>
@@ -30,8 +31,9 @@ std::size_t at(std::int32_t i) {
 // Facet i lies opposite corner i; its nodes run counter-clockwise seen from outside.
 constexpr std::int32_t kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 constexpr std::int32_t kSides[3][2] = {{1, 2}, {2, 0}, {0, 1}};
-// Of the volume of a box of an element's size.
-constexpr double kRoundingRel = 1e-12;
+// Roundings of the difference of two nodes, of the largest coordinate: each is the sum of some
+// products of numbers no larger, rounded to 2^-53 of it.
+constexpr double kCoordinateRounding = 32 * 0x1p-53;
 
 class CellChecker {
  public:
@@ -132,9 +134,13 @@ class CellChecker {
     return {};
   }
 
-  // Signs that rounding may decide are left alone.
+  // In all sectors, and as written: by more than the rounding of a node's rotation and move into
+  // the model's frame may change.
   Result<void> check_orientation() const {
     const RotationTable rotations(cell_.fold);
+    double largest = std::max({std::abs(cell_.axis_origin.x), std::abs(cell_.axis_origin.y),
+                               std::abs(cell_.axis_origin.z)});
+    double reach = 0;
     std::vector<Point3> points;
     points.reserve(cell_.nodes.size());
     for (const OrbitVertex& v : cell_.nodes) {
@@ -143,15 +149,24 @@ class CellChecker {
         return broken("orbit " + std::to_string(v.orbit) + " is not on the axis");
       }
       points.push_back(rotations.rotate(p, v.exponent));
+      reach = std::max(reach, length(p));
     }
+    largest += reach;
+    const double off = kCoordinateRounding * largest;  // of a difference of two nodes
     for (std::size_t e = 0; e < cell_.element_count(); ++e) {
       const std::int32_t* v = element(e);
       const Point3 a = points[at(v[0])];
       const Point3 p = points[at(v[1])] - a, q = points[at(v[2])] - a;
-      const Point3 r = dimension_ == 2 ? Point3{0, 0, 1} : points[at(v[3])] - a;
-      const double reach = length(p) * length(q) * length(r);
-      if (dot(cross(p, q), r) >= -kRoundingRel * reach) continue;
-      return broken("element " + std::to_string(e) + " is turned inside out");
+      const double lp = length(p), lq = length(q);
+      double size = cross(p, q).z, doubt = off * (lp + lq);
+      if (dimension_ == 3) {
+        const Point3 r = points[at(v[3])] - a;
+        const double lr = length(r);
+        size = dot(cross(p, q), r);
+        doubt = off * (lp * lq + lq * lr + lr * lp);
+      }
+      if (size > doubt) continue;
+      return broken("element " + std::to_string(e) + " is flat or turned inside out");
     }
     return {};
   }
