@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
 #include <optional>
 #include <string>
 #include <utility>
@@ -68,6 +69,7 @@ class Checker {
     auto pairs = self_intersections(surface_, 1, context_);
     if (!pairs) return tl::unexpected<Error>(pairs.error());
     if (!pairs->empty()) return facets_meet(pairs->front().first, pairs->front().second);
+    if (auto ok = check_common_diagonals(); !ok) return ok;
     if (loose_.empty()) return {};
     return check_loose_edges();
   }
@@ -106,6 +108,48 @@ class Checker {
             (coplanar ? " overlap in one plane near " : " cross at ") + describe_point(*place) +
             "; facets may meet in common vertices and segments only",
         {std::min(f, g), std::max(f, g)}, "/facets/" + std::to_string(std::max(f, g)));
+  }
+
+  // Facets that cross from one common vertex to another may have triangles that meet along that
+  // line and do not cross: it is a segment of neither.
+  [[nodiscard]] Result<void> check_common_diagonals() const {
+    struct Diagonal {
+      std::int32_t a = 0, b = 0, facet = 0;
+      auto operator<=>(const Diagonal&) const = default;
+    };
+    std::vector<Diagonal> diagonals;
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+      const auto& v = surface_.triangles[t];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto [a, b] = std::minmax(v[i], v[(i + 1) % 3]);
+        if (!is_segment(a, b)) diagonals.push_back({a, b, surface_.source[t]});
+      }
+    }
+    std::sort(diagonals.begin(), diagonals.end());
+    diagonals.erase(std::unique(diagonals.begin(), diagonals.end()), diagonals.end());
+    const auto same = std::adjacent_find(
+        diagonals.begin(), diagonals.end(),
+        [](const Diagonal& d, const Diagonal& e) { return d.a == e.a && d.b == e.b; });
+    if (same == diagonals.end()) return {};
+    const std::int32_t f = complex_.facets[at(same->facet)].source;
+    const std::int32_t g = complex_.facets[at((same + 1)->facet)].source;
+    return fail(ErrorCode::kSelfIntersection,
+                "facets " + std::to_string(std::min(f, g)) + " and " +
+                    std::to_string(std::max(f, g)) + " cross between " +
+                    describe_point(complex_.points[at(same->a)]) + " and " +
+                    describe_point(complex_.points[at(same->b)]) +
+                    "; facets may meet in common vertices and segments only",
+                {std::min(f, g), std::max(f, g)}, "/facets/" + std::to_string(std::max(f, g)));
+  }
+
+  // `a` < `b`.
+  [[nodiscard]] bool is_segment(std::int32_t a, std::int32_t b) const {
+    const auto edge = std::lower_bound(
+        complex_.edges.begin(), complex_.edges.end(), std::pair(a, b),
+        [](const ComplexEdge& e, const std::pair<std::int32_t, std::int32_t>& key) {
+          return std::pair(e.a, e.b) < key;
+        });
+    return edge != complex_.edges.end() && edge->a == a && edge->b == b;
   }
 
   [[nodiscard]] std::string describe_edge(std::int32_t e) const {

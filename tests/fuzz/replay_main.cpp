@@ -36,6 +36,9 @@ int run_random(std::uint64_t count, std::uint64_t first, std::uint64_t size) {
     for (char& c : bytes) c = engine() % 4 < zeros ? '\0' : static_cast<char>(engine() % 256);
     const pid_t child = fork();
     if (child == 0) {
+      if (std::getenv("SYMCELL_FUZZ_TELL") != nullptr) {
+        std::fprintf(stderr, "seed %llu\n", static_cast<unsigned long long>(seed));
+      }
       run(bytes);
       std::_Exit(0);
     }

@@ -127,6 +127,23 @@ TEST(ValidatePlc, FacetsThatCrossAreNamedWithThePlace) {
   expect_refused(plc, ErrorCode::kSelfIntersection, {"vertex 8", "vertex 10"});
 }
 
+TEST(ValidatePlc, FacetsThatCrossBetweenCommonVerticesAreNamed) {
+  // Two rhombs about one diagonal, which divides both into triangles.
+  Plc plc = box({-2, -2, -2}, {2, 2, 3});
+  for (const Point3 p : {Point3{0, 0, 0}, Point3{0, 0, 1}, Point3{1, 0, 0.5}, Point3{-1, 0, 0.5},
+                         Point3{0, 1, 0.5}, Point3{0, -1, 0.5}}) {
+    plc.vertices.push_back(p);
+  }
+  plc.facets.push_back(facet({{8, 10, 9, 11}}));
+  plc.facets.push_back(facet({{8, 12, 9, 13}}));
+  expect_refused(plc, ErrorCode::kSelfIntersection,
+                 {"facets 6 and 7 cross between (0, 0, 0) and (0, 0, 1)"}, "/facets/7");
+  // It may be a segment, of one of them: then it is of both.
+  plc.facets.back().polygons.push_back({8, 9});
+  ExecutionContext context;
+  EXPECT_TRUE(validate_plc(plc, context));
+}
+
 TEST(ValidatePlc, OverlappingFacetsAreRefused) {
   // Two boxes side by side whose common walls only partly agree: coplanar, crossing edges.
   Plc plc = box({0, 0, 0}, {1, 1, 1});
