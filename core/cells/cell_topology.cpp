@@ -77,7 +77,9 @@ void CellTopology::load_star(VertexId v) {
   }
 }
 
-std::int32_t CellTopology::groups(const Corner* other, std::vector<std::int32_t>& group) const {
+std::int32_t CellTopology::groups(const Corner* other,
+                                  std::vector<std::int32_t>& group,
+                                  Joined by) const {
   const auto counts = [&](const LabelledStar::Member& m) {
     return other == nullptr ||
            std::find(m.corners.begin(), m.corners.end(), *other) != m.corners.end();
@@ -95,7 +97,8 @@ std::int32_t CellTopology::groups(const Corner* other, std::vector<std::int32_t>
         // Faces round the edge are those that contain the other corner too.
         if (m.neighbours[i] < 0 || (other != nullptr && m.corners[i] == *other)) continue;
         const auto j = static_cast<std::size_t>(m.neighbours[i]);
-        if (group[j] >= 0 || !cell_->is_inside(4 * m.copy.t + i)) continue;
+        if (group[j] >= 0) continue;
+        if (by == Joined::kByInnerFaces && !cell_->is_inside(4 * m.copy.t + i)) continue;
         group[j] = count;
         stack_.push_back(m.neighbours[i]);
       }
@@ -113,8 +116,38 @@ void CellTopology::add(CellFlawKind kind, std::vector<CellFlaw>* out, std::int32
 void CellTopology::look_at_group(const Corner* other,
                                  std::vector<CellFlaw>* out,
                                  std::int32_t& count) {
-  const bool edge = other != nullptr;
   const std::int32_t parts = groups(other, group_);
+  const std::size_t before = out == nullptr ? 0 : out->size();
+  std::int32_t found = 0;
+  look_at_parts(other, parts, out, found);
+  if (found > 0 && other != nullptr) {
+    // Where the solid touches itself along the edge, each side of it is an edge of its own.
+    const std::int32_t rings = groups(other, ring_, Joined::kByAllFaces);
+    if (rings > 1) {
+      if (out != nullptr) out->resize(before);
+      found = 0;
+      whole_.swap(group_);
+      for (std::int32_t r = 0; r < rings; ++r) {
+        group_ = whole_;
+        std::vector<std::uint8_t> has(static_cast<std::size_t>(parts), 0);
+        for (std::size_t i = 0; i < group_.size(); ++i) {
+          if (ring_[i] != r) group_[i] = -1;
+          if (group_[i] >= 0) has[static_cast<std::size_t>(group_[i])] = 1;
+        }
+        const auto own = static_cast<std::int32_t>(std::count(has.begin(), has.end(), 1));
+        look_at_parts(other, own, out, found);
+      }
+    }
+  }
+  count += found;
+}
+
+// `parts`: the number of groups of the members in group_.
+void CellTopology::look_at_parts(const Corner* other,
+                                 std::int32_t parts,
+                                 std::vector<CellFlaw>* out,
+                                 std::int32_t& count) {
+  const bool edge = other != nullptr;
   if (star_.on_axis) {
     for (std::int32_t i = 1; i < parts; ++i) {
       add(edge ? CellFlawKind::kSplitEdge : CellFlawKind::kSeveralPatches, out, count);

@@ -76,10 +76,17 @@ class CellTopology {
   // Members of the star in groups joined by faces inside the cell: all of them, or those at the
   // edge to `other` (a corner in the star's frame), joined round that edge. Group per member, -1
   // for members that do not count; the number of groups.
-  std::int32_t groups(const Corner* other, std::vector<std::int32_t>& group) const;
+  enum class Joined : std::uint8_t { kByInnerFaces, kByAllFaces };
+  std::int32_t groups(const Corner* other,
+                      std::vector<std::int32_t>& group,
+                      Joined by = Joined::kByInnerFaces) const;
 
  private:
   void look_at_group(const Corner* other, std::vector<CellFlaw>* out, std::int32_t& count);
+  void look_at_parts(const Corner* other,
+                     std::int32_t parts,
+                     std::vector<CellFlaw>* out,
+                     std::int32_t& count);
   void add(CellFlawKind kind, std::vector<CellFlaw>* out, std::int32_t& count) const;
 
   const Representatives* cell_;
@@ -88,7 +95,7 @@ class CellTopology {
   std::vector<TetCopy> copies_;
   std::vector<std::pair<std::uint64_t, std::int32_t>> order_;  // of the members, by name
   std::vector<Corner> others_;
-  std::vector<std::int32_t> group_;
+  std::vector<std::int32_t> group_, ring_, whole_;
   mutable std::vector<std::int32_t> stack_;
 };
 

@@ -58,6 +58,8 @@ inline bool mesh_and_check(const Model& model,
                            std::uint64_t elements,
                            double seconds,
                            VerifyOptions checks = {}) {
+  // On slow machines, or to look at one input.
+  if (const char* more = std::getenv("SYMCELL_FUZZ_SECONDS")) seconds = std::strtod(more, nullptr);
   options.max_elements = elements;
   options.time_limit_s = seconds;
   ExecutionContext context;

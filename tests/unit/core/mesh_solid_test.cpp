@@ -55,6 +55,55 @@ Plc blocks_that_touch(std::int32_t count) {
   return plc;
 }
 
+// A drum of three layers over 2 * fold sectors; in the one in the middle every other wedge round the
+// axis and the pockets in its rim between the wedges are void: what is left touches itself along
+// upright edges, and hangs together above and below them.
+Plc drum_with_pockets(std::int32_t fold) {
+  const std::int32_t n = 2 * fold, level = 2 * n + 1;
+  Plc plc;
+  for (const double z : {0.0, 1.0, 2.0, 3.0}) {
+    plc.vertices.push_back({0, 0, z});
+    for (const double r : {1.0, 2.0}) {
+      for (std::int32_t i = 0; i < n; ++i) {
+        const double angle = 2 * std::numbers::pi * i / n;
+        plc.vertices.push_back({r * std::cos(angle), r * std::sin(angle), z});
+      }
+    }
+  }
+  const auto inner = [&](std::int32_t i) { return 1 + i % n; };
+  const auto outer = [&](std::int32_t i) { return 1 + n + i % n; };
+  const auto wall = [&](std::int32_t l, std::int32_t a, std::int32_t b) {
+    a += l * level;
+    b += l * level;
+    plc.facets.push_back({{{a, b, b + level, a + level}}, {}, 0});
+  };
+  for (const std::int32_t z : {0, 3 * level}) {
+    PlcFacet disc{{{}}, {}, 0};
+    for (std::int32_t i = 0; i < n; ++i) disc.polygons[0].push_back(z + outer(i));
+    plc.facets.push_back(disc);
+  }
+  for (std::int32_t i = 0; i < n; ++i) {
+    for (const std::int32_t l : {0, 2}) wall(l, outer(i), outer(i + 1));
+    wall(1, inner(i), inner(i + 1));  // between a wedge and the part of the rim beyond it
+    wall(1, 0, inner(i));
+    wall(1, inner(i), outer(i));
+    const bool pocket = i % 2 == 0;
+    if (!pocket) wall(1, outer(i), outer(i + 1));
+    for (const std::int32_t z : {level, 2 * level}) {
+      plc.facets.push_back(
+          pocket
+              ? PlcFacet{{{z + inner(i), z + outer(i), z + outer(i + 1), z + inner(i + 1)}}, {}, 0}
+              : PlcFacet{{{z, z + inner(i), z + inner(i + 1)}}, {}, 0});
+    }
+    if (!pocket) {
+      const Point3 a = plc.vertices[static_cast<std::size_t>(inner(i))];
+      const Point3 b = plc.vertices[static_cast<std::size_t>(inner(i + 1))];
+      plc.holes.push_back(Point3{0, 0, 1.5} + 0.25 * (a + b));
+    }
+  }
+  return plc;
+}
+
 // One sector, or none that can be cut.
 class PrismSource final : public SectorSource {
  public:
@@ -348,6 +397,22 @@ TEST(MeshSolid, BlocksThatTouchAlongEdges) {
         EXPECT_EQ(cell.lower_to_higher[i], found == index.end() ? -1 : found->second);
       }
     }
+  }
+}
+
+// Both sides of such an edge are in the cell, one turned against the other: no flaw of the cell.
+TEST(MeshSolid, TouchesItselfBetweenWholeLayers) {
+  for (const std::int32_t fold : {2, 3, 6}) {
+    SCOPED_TRACE("fold " + std::to_string(fold));
+    MeshOptions options;
+    options.fold = fold;
+    ExecutionContext context;
+    const auto source = symmetrise_plc(drum_with_pockets(fold), options, context);
+    ASSERT_TRUE(source) << source.error().message;
+    const auto made = mesh_solid(**source, options, context);
+    ASSERT_TRUE(made) << made.error().message;
+    const double sector = std::sin(std::numbers::pi / fold);
+    EXPECT_NEAR(made->statistics.cell.measure, sector * (2 * 4 + 2), 1e-9);
   }
 }
 
