@@ -134,91 +134,121 @@ class CellCutter {
 
   // Shortest path of edges from the inner to the outer end: fewest edges, then (among those met in
   // breadth-first order) shortest. Edges of the domain's boundary cost nothing, so this is a
-  // breadth-first search on a double-ended queue.
+  // breadth-first search on a double-ended queue. A path that came to the rim of a hole by an edge
+  // inside leaves it at another vertex: else the cell, on both sides of the hole, would touch itself
+  // there. So a vertex at the rim is reached in up to two ways, from where the path came to it.
   void cut_component(std::int32_t id) {
     const auto c = static_cast<std::size_t>(id);
     if (inner_[c].empty() || outer_[c].empty()) return;
-    reach_.assign(mesh_.vertex_slots(), {});
-    for (const VertexId v : outer_[c]) reach_[idx(v)].is_goal = true;
-    std::deque<VertexId> queue;
+    reach_.assign(2 * mesh_.vertex_slots(), {});
+    is_goal_.assign(mesh_.vertex_slots(), 0);
+    for (const VertexId v : outer_[c]) is_goal_[idx(v)] = 1;
+    std::deque<std::size_t> queue;
     for (const VertexId v : inner_[c]) {
-      reach_[idx(v)].hops = 0;
-      queue.push_back(v);
+      reach_[2 * idx(v)].hops = 0;
+      queue.push_back(2 * idx(v));
     }
     while (!queue.empty()) {
-      const VertexId v = queue.front();
+      const std::size_t way = queue.front();
       queue.pop_front();
-      if (reach_[idx(v)].done) continue;
-      reach_[idx(v)].done = true;
-      if (reach_[idx(v)].is_goal) {
-        trace(v);
+      if (reach_[way].done) continue;
+      reach_[way].done = true;
+      if (is_goal_[way / 2] != 0) {
+        trace(way);
         return;
       }
-      visit_edges(v, id, queue);
+      visit_edges(way, id, queue);
     }
   }
 
-  // Looks at the edges at v in the component, wedge by wedge where v lies on the boundary.
-  void visit_edges(VertexId v, std::int32_t id, std::deque<VertexId>& queue) {
+  // Looks at the edges at a vertex in the component, wedge by wedge where it lies on the boundary.
+  void visit_edges(std::size_t way, std::int32_t id, std::deque<std::size_t>& queue) {
+    const auto v = static_cast<VertexId>(way / 2);
     const auto first = std::lower_bound(wedges_.begin(), wedges_.end(), std::pair(v, HalfEdge{0}));
     if (first == wedges_.end() || first->first != v) {
-      visit_wedge(v, mesh_.corner_of(v), queue);
+      visit_wedge(way, mesh_.corner_of(v), queue);
       return;
     }
     for (auto it = first; it != wedges_.end() && it->first == v; ++it) {
-      if (component_[triangle_of(it->second)] == id) visit_wedge(v, it->second, queue);
+      if (component_[triangle_of(it->second)] == id) visit_wedge(way, it->second, queue);
     }
   }
 
-  void visit_wedge(VertexId v, HalfEdge corner, std::deque<VertexId>& queue) {
+  void visit_wedge(std::size_t way, HalfEdge corner, std::deque<std::size_t>& queue) {
     StarItem item = star_item(mesh_, corner);
     const StarItem begin = item;
+    const bool only_boundary = reach_[way].entry == corner;
     for (;;) {
-      relax(v, 3 * item.t + prev3(item.i), star_corner(mesh_, item, 1), true, queue);
+      const HalfEdge out = 3 * item.t + prev3(item.i);
+      if (!only_boundary || is_open(out)) relax(way, out, star_corner(mesh_, item, 1), true, queue);
       const StarItem last = item;
       if (!rotate_ccw(mesh_, item)) {
-        relax(v, 3 * last.t + next3(last.i), star_corner(mesh_, last, 2), false, queue);
+        relax(way, 3 * last.t + next3(last.i), star_corner(mesh_, last, 2), false, queue);
         return;
       }
       if (item.t == begin.t && item.i == begin.i) return;
     }
   }
 
-  // `leaves`: h starts at v, so its triangle is on the left of the way out. No symmetry edge lies
-  // on the domain's boundary: such edges are free.
-  void relax(VertexId v, HalfEdge h, Corner to, bool leaves, std::deque<VertexId>& queue) {
-    const Reach here = reach_[idx(v)];
-    Reach& there = reach_[idx(to.v)];
-    if (there.done) return;
-    const bool open = mesh_.triangle(triangle_of(h)).nb[local_of(h)] == kNoHalfEdge;
-    const std::int32_t hops = here.hops + (open ? 0 : 1);
-    const double len = here.length + (open ? 0 : distance(mesh_.point(v), mesh_.lift(to.v, to.k)));
-    const bool nearer = there.hops == kUnset || hops < there.hops;
-    if (!nearer && (hops > there.hops || len >= there.length)) return;
-    there.hops = hops;
-    there.length = len;
-    there.via = h;
-    there.from = v;
-    there.leaves = leaves;
+  [[nodiscard]] bool is_open(HalfEdge h) const {
+    return mesh_.triangle(triangle_of(h)).nb[local_of(h)] == kNoHalfEdge;
+  }
+
+  // The first corner of the wedge at which the inner half-edge h starts or ends, kNoHalfEdge where
+  // the vertex is inside the domain.
+  [[nodiscard]] HalfEdge wedge_of(HalfEdge h, bool at_end) const {
+    StarItem item{triangle_of(h), at_end ? prev3(local_of(h)) : next3(local_of(h)), 0};
+    if (!to_star_begin(mesh_, item)) return kNoHalfEdge;
+    return 3 * item.t + item.i;
+  }
+
+  // `leaves`: h starts at the vertex, so its triangle is on the left of the way out. No symmetry
+  // edge lies on the domain's boundary: such edges are free.
+  void relax(std::size_t way, HalfEdge h, Corner to, bool leaves, std::deque<std::size_t>& queue) {
+    const Reach here = reach_[way];
+    const bool open = is_open(h);
+    Reach next;
+    next.hops = here.hops + (open ? 0 : 1);
+    next.length =
+        here.length +
+        (open ? 0 : distance(mesh_.point(static_cast<VertexId>(way / 2)), mesh_.lift(to.v, to.k)));
+    next.via = h;
+    next.from = way;
+    next.leaves = leaves;
+    next.entry = open ? here.entry : wedge_of(h, leaves);
+    const std::size_t first = 2 * idx(to.v);
+    const auto less = [](const Reach& a, const Reach& b) {
+      if (a.hops == kUnset || b.hops == kUnset) return a.hops != kUnset && b.hops == kUnset;
+      return a.hops != b.hops ? a.hops < b.hops : a.length < b.length;
+    };
+    // In place of the way from the same entry, else of the worse one.
+    std::size_t place = less(reach_[first], reach_[first + 1]) ? first + 1 : first;
+    for (const std::size_t slot : {first, first + 1}) {
+      if (reach_[slot].hops != kUnset && reach_[slot].entry == next.entry) place = slot;
+    }
+    Reach& there = reach_[place];
+    if (there.done || !less(next, there)) return;
+    const bool nearer = there.hops == kUnset || next.hops < there.hops || there.entry != next.entry;
+    there = next;
     if (!nearer) return;  // queued already
     if (open) {
-      queue.push_front(to.v);
+      queue.push_front(place);
     } else {
-      queue.push_back(to.v);
+      queue.push_back(place);
     }
   }
 
-  // Marks the path that ends at v. On the left of the way out, counter-clockwise about the centre,
+  // Marks the path that ends there. On the left of the way out, counter-clockwise about the centre,
   // is the side of the lower bound.
-  void trace(VertexId v) {
-    while (reach_[idx(v)].via != kNoHalfEdge) {
-      const Reach& reach = reach_[idx(v)];
+  void trace(std::size_t way) {
+    while (reach_[way].via != kNoHalfEdge) {
+      const Reach& reach = reach_[way];
       const HalfEdge g = mesh_.triangle(triangle_of(reach.via)).nb[local_of(reach.via)];
       if (g != kNoHalfEdge) {
         is_cut_[reach.via] = is_cut_[g] = 1;
         cut_.lower.push_back(reach.leaves ? reach.via : g);
       }
-      v = reach.from;
+      way = reach.from;
     }
   }
 
@@ -278,15 +308,15 @@ class CellCutter {
     }
   }
 
-  // How a vertex is reached: over half-edge `via` from vertex `from`.
+  // How a vertex is reached: over half-edge `via` from another.
   struct Reach {
     std::int32_t hops = kUnset;
     double length = 0;
     HalfEdge via = kNoHalfEdge;
-    VertexId from = -1;
+    std::size_t from = 0;          // index in reach_
+    HalfEdge entry = kNoHalfEdge;  // the wedge at which the path came to this boundary
     bool leaves = false;
     bool done = false;
-    bool is_goal = false;  // on the outer end
   };
 
   const QuotientTriangulation& mesh_;
@@ -294,7 +324,8 @@ class CellCutter {
   std::vector<std::uint8_t> is_cut_;
   std::vector<std::vector<VertexId>> inner_, outer_;   // per component
   std::vector<std::pair<VertexId, HalfEdge>> wedges_;  // first corner of each wedge at the boundary
-  std::vector<Reach> reach_;                           // per vertex, of one component
+  std::vector<Reach> reach_;                           // two a vertex, of one component
+  std::vector<std::uint8_t> is_goal_;                  // per vertex: on the outer end
   std::vector<TriangleId> seeds_;
   std::vector<TriangleId> stack_;
   CellCut cut_;
