@@ -123,7 +123,7 @@ class OutlineMaker {
         i = (side_to(g, static_cast<std::int32_t>(f)) + 1) % sheet_[at(g)].corners.size();
         f = at(g);
       }
-      result.push_back({vertex, sheet_[f].lines[i] == line});
+      result.push_back({vertex, sheet_[f].lines[i] == line, line});
     }
     return result;
   }

@@ -32,6 +32,7 @@ using Sheet = std::vector<SheetFace>;
 struct OutlineCorner {
   std::int32_t vertex = 0;
   bool straight = false;  // the outline runs straight on
+  std::int64_t line = 0;  // of the side that comes to it
 };
 
 // A group of faces of a sheet that hang together by sides.

@@ -46,6 +46,7 @@ class PlcMaker {
   struct Facet {
     FacetOutline outline;
     std::int32_t marker = 0;
+    std::int64_t line = -1;  // of the grid, which a wall stands on; -1: level
   };
 
   void choose_facets() {
@@ -81,7 +82,8 @@ class PlcMaker {
       for (FacetOutline& o : make_outlines(sheets_[s], wanted_[s], joins)) {
         keep_seams(sheets_[s], level, seam, o);
         const std::int32_t m = marker_of(sheets_[s][at(o.face)]);
-        facets_.push_back({std::move(o), m});
+        const std::int64_t line = level ? -1 : static_cast<std::int64_t>(s - cells_.heights.size());
+        facets_.push_back({std::move(o), m, line});
       }
     }
   }
@@ -116,14 +118,17 @@ class PlcMaker {
   void write_facets() {
     const Coin stays(random_, chance(0.5) ? 1 : 0.3);
     const double listed = chance(0.5) ? 1 : 0.4;
+    constexpr char kCorner = 1, kCrossing = 2;
     std::vector<char> needed(cells_.grid.points.size() * cells_.heights.size(), 0);
+    std::map<std::int32_t, std::int64_t> passing;
     for (const Facet& f : facets_) {
       for (const auto& loop : f.outline.loops) {
         for (const OutlineCorner& c : loop) {
-          if (!c.straight) needed[at(c.vertex)] = 1;
+          if (!c.straight) needed[at(c.vertex)] |= kCorner;
+          if (c.straight && !runs_through(f, c, passing)) needed[at(c.vertex)] |= kCrossing;
         }
       }
-      for (const auto& s : f.outline.seams) needed[at(s[0])] = needed[at(s[1])] = 1;
+      for (const auto& s : f.outline.seams) needed[at(s[0])] = needed[at(s[1])] = kCorner;
     }
     std::vector<std::int32_t> index(needed.size(), -1);
     const auto use = [&](std::int32_t v) {
@@ -146,7 +151,9 @@ class PlcMaker {
       for (const auto& loop : f.outline.loops) {
         std::vector<std::int32_t> polygon;
         for (const OutlineCorner& c : loop) {
-          bool keep = needed[at(c.vertex)] != 0 ? !c.straight || chance(listed)
+          const bool must =
+              !c.straight || (needed[at(c.vertex)] == kCrossing && index[at(c.vertex)] < 0);
+          bool keep = needed[at(c.vertex)] != 0 ? must || chance(listed)
                                                 : stays(vertex_orbit(c.vertex));
           if (times[c.vertex] > 1 || (needed[at(c.vertex)] != 0 && !options_.touching)) keep = true;
           if (keep) polygon.push_back(use(c.vertex));
@@ -156,6 +163,17 @@ class PlcMaker {
       for (const auto& s : f.outline.seams) facet.polygons.push_back({use(s[0]), use(s[1])});
       made_.plc.facets.push_back(std::move(facet));
     }
+  }
+
+  // Whether all outlines that run straight through the corner do so on one line; `passing`: the line
+  // of those before, per vertex. Where two lines cross there is a vertex.
+  static bool runs_through(const Facet& f,
+                           const OutlineCorner& c,
+                           std::map<std::int32_t, std::int64_t>& passing) {
+    constexpr std::int64_t kUpright = -1;
+    const bool level = f.line < 0;
+    const std::int64_t line = level ? c.line : (c.line < 0 ? f.line : kUpright);
+    return passing.try_emplace(c.vertex, line).first->second == line;
   }
 
   [[nodiscard]] Point3 position(std::int32_t vertex) const {
