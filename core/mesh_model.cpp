@@ -4,8 +4,8 @@
 #include <memory>
 #include <utility>
 
-#include "core/mesh_solid.hpp"
-#include "core/model/validate_pslg.hpp"
+#include "core/plane/input/validate_pslg.hpp"
+#include "core/solid/mesh_solid.hpp"
 
 namespace symcell {
 namespace {
@@ -16,8 +16,8 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-void record(const SectorSource& source, Statistics& statistics) {
-  const SolidSymmetry& found = source.symmetry();
+void record(const solid::SectorSource& source, Statistics& statistics) {
+  const solid::Symmetry& found = source.symmetry();
   Statistics::Symmetry& told = statistics.symmetry;
   told.fold = found.fold;
   told.axis_origin = found.frame.origin;
@@ -34,10 +34,10 @@ Result<MeshOutcome> mesh_with(const Symmetrise& symmetrise,
                               ExecutionContext& context) {
   const Clock::time_point start = Clock::now();
   context.report(Phase::kSymmetry, 0.02);
-  const Result<std::unique_ptr<SectorSource>> source = symmetrise();
+  const Result<std::unique_ptr<solid::SectorSource>> source = plane::symmetrise();
   if (!source) return tl::unexpected(source.error());
   const double symmetry_ms = milliseconds_since(start);
-  Result<MeshOutcome> outcome = mesh_solid(**source, options, context);
+  Result<MeshOutcome> outcome = solid::mesh_solid(**source, options, context);
   if (!outcome) return outcome;
   Statistics& statistics = outcome->statistics;
   record(**source, statistics);
@@ -57,27 +57,30 @@ Result<Inspection> widened(Result<Found> found) {
 Result<MeshOutcome> mesh_model(const Model& model,
                                const MeshOptions& options,
                                ExecutionContext& context) {
-  if (const auto* pslg = std::get_if<Pslg>(&model)) return mesh_pslg(*pslg, options, context);
+  if (const auto* pslg = std::get_if<Pslg>(&model))
+    return plane::mesh_pslg(*pslg, options, context);
   if (const auto* plc = std::get_if<Plc>(&model)) {
-    return mesh_with([&] { return symmetrise_plc(*plc, options, context); }, options, context);
+    return mesh_with([&] { return solid::symmetrise_plc(*plc, options, context); }, options,
+                     context);
   }
   const auto& surface = std::get<TriangleSurface>(model);
-  return mesh_with([&] { return symmetrise_surface(surface, options, context); }, options, context);
+  return mesh_with([&] { return solid::symmetrise_surface(surface, options, context); }, options,
+                   context);
 }
 
 Result<Inspection> inspect_model(const Model& model,
                                  const MeshOptions& options,
                                  ExecutionContext& context) {
   if (const auto* pslg = std::get_if<Pslg>(&model)) {
-    if (const auto valid = validate_pslg(*pslg, context); !valid) {
+    if (const auto valid = plane::validate_pslg(*pslg, context); !valid) {
       return tl::unexpected(valid.error());
     }
-    return widened(inspect_pslg(*pslg, options, context));
+    return widened(plane::inspect_pslg(*pslg, options, context));
   }
   if (const auto* plc = std::get_if<Plc>(&model)) {
-    return widened(inspect_plc(*plc, options, context));
+    return widened(solid::inspect_plc(*plc, options, context));
   }
-  return widened(inspect_surface(std::get<TriangleSurface>(model), options, context));
+  return widened(solid::inspect_surface(std::get<TriangleSurface>(model), options, context));
 }
 
 }  // namespace symcell

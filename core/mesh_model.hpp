@@ -5,11 +5,11 @@
 
 #include "core/base/error.hpp"
 #include "core/base/execution_context.hpp"
-#include "core/mesh_pslg.hpp"
 #include "core/model/mesh_options.hpp"
 #include "core/model/model.hpp"
-#include "core/symmetry/symmetrise.hpp"
-#include "core/symmetry/symmetrise_solid.hpp"
+#include "core/plane/mesh_pslg.hpp"
+#include "core/plane/symmetry/symmetrise.hpp"
+#include "core/solid/sector/symmetrise.hpp"
 
 namespace symcell {
 
@@ -17,8 +17,6 @@ namespace symcell {
 [[nodiscard]] Result<MeshOutcome> mesh_model(const Model& model,
                                              const MeshOptions& options,
                                              ExecutionContext& context);
-
-using Inspection = std::variant<PslgInspection, SolidInspection>;
 
 // `symcell inspect`: validates the model and tells what symmetrising would find; meshes nothing.
 // Errors: model codes, limits.

@@ -50,7 +50,7 @@ add_library(
   jobs/job_files.cpp
   jobs/job_runner.cpp
   jobs/job_service.cpp
-  jobs/local_engine.cpp
+  worker/local_engine.cpp
   jobs/retention.cpp
   jobs/sqlite_job_store.cpp
   worker/protocol.cpp

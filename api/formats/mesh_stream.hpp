@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "api/formats/mesh_writer.hpp"
-#include "core/cells/full_mesh.hpp"
+#include "core/cell/full_mesh.hpp"
 
 namespace symcell {
 

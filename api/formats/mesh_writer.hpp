@@ -8,7 +8,7 @@
 
 #include "api/sink.hpp"
 #include "core/base/error.hpp"
-#include "core/cells/symmetry_cell_mesh.hpp"
+#include "core/cell/symmetry_cell_mesh.hpp"
 
 namespace symcell {
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "api/formats/mesh_formats.hpp"
-#include "core/cells/boundary_faces.hpp"
+#include "core/cell/boundary_faces.hpp"
 
 namespace symcell::internal {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/base/error.hpp"
-#include "core/cells/mesh_data.hpp"
+#include "core/verify/mesh_data.hpp"
 
 namespace symcell {
 

@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/cell/statistics.hpp"
 #include "core/mesh_model.hpp"
 #include "core/model/mesh_options.hpp"
 #include "core/model/model.hpp"
-#include "core/stats/statistics.hpp"
 
 namespace symcell {
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <span>
 
-#include "core/surface/indexed_surface.hpp"
+#include "core/geometry/indexed_surface.hpp"
 
 namespace symcell {
 

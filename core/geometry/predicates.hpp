@@ -1,6 +1,6 @@
 // The two predicates all plane geometry branches on; exact for all doubles up to 1e60.
 //
-// Laws (tests/unit/core/predicates_test.cpp):
+// Laws (tests/unit/core/geometry/predicates_test.cpp):
 //   1. orientation(a, b, c) = orientation(b, c, a) = -orientation(b, a, c);
 //   2. in_circle is even under even permutations of its first three arguments, odd under odd ones;
 //   3. in_circle(a, b, c, d) for ccw a, b, c: positive inside, zero on, negative outside the
@@ -21,6 +21,7 @@
 #include <cstdint>
 
 #include "core/geometry/point.hpp"
+#include "core/model/limits.hpp"
 
 namespace symcell {
 

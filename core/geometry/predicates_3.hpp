@@ -1,6 +1,6 @@
 // The two predicates all geometry of space branches on; exact for all doubles up to 1e60.
 //
-// Laws (tests/unit/core/predicates_3_test.cpp):
+// Laws (tests/unit/core/geometry/predicates_3_test.cpp):
 //   1. orientation_3 is even under even permutations of its arguments, odd under odd ones;
 //   2. orientation_3(a, b, c, d) > 0: a tetrahedron in VTK's order, (b - a) x (c - a) . (d - a) >
 //   0;

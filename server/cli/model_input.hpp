@@ -4,8 +4,8 @@
 #include <string>
 
 #include "core/base/error.hpp"
-#include "core/cells/mesh_data.hpp"
 #include "core/model/model.hpp"
+#include "core/verify/mesh_data.hpp"
 
 namespace symcell::cli {
 

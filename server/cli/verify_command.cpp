@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "core/cells/verify_mesh.hpp"
+#include "core/verify/verify_mesh.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/model_input.hpp"
 #include "server/cli/report_error.hpp"

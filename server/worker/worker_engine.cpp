@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "server/base/metrics.hpp"
-#include "server/jobs/local_engine.hpp"
+#include "server/worker/local_engine.hpp"
 
 namespace symcell::server {
 namespace {

@@ -19,7 +19,7 @@
 #include "api/formats/model_format.hpp"
 #include "core/base/execution_context.hpp"
 #include "server/base/files.hpp"
-#include "server/jobs/local_engine.hpp"
+#include "server/worker/local_engine.hpp"
 #include "server/worker/process_limits.hpp"
 #include "server/worker/protocol.hpp"
 #include "server/worker/worker_faults.hpp"

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "core/symmetry/symmetrise.hpp"
+#include "core/plane/symmetry/symmetrise.hpp"
 #include "tests/support/pslg_builders.hpp"
 
 namespace symcell::bench {
@@ -33,14 +33,14 @@ MeshOptions sized_options(const Pslg& model, std::int32_t fold, double triangles
   MeshOptions options;
   options.fold = fold;
   options.plain = plain;
-  const double area = value_of(inspect_pslg(model, options, context)).area;
+  const double area = value_of(plane::inspect_pslg(model, options, context)).area;
   options.max_area = area / (triangles * (plain ? kMeanAreaPlain : kMeanArea));
   return options;
 }
 
 MeshOutcome mesh(const Pslg& model, const MeshOptions& options) {
   ExecutionContext context;
-  return value_of(mesh_pslg(model, options, context));
+  return value_of(plane::mesh_pslg(model, options, context));
 }
 
 }  // namespace symcell::bench

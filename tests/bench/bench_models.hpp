@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/mesh_pslg.hpp"
+#include "core/plane/mesh_pslg.hpp"
 
 namespace symcell::bench {
 

@@ -12,9 +12,9 @@
 #include <variant>
 
 #include "api/formats/model_reader.hpp"
-#include "core/initial/initial_tetrahedralization.hpp"
-#include "core/symmetry/symmetrise_solid.hpp"
-#include "core/tds/validate_tetrahedra.hpp"
+#include "core/solid/initial/initial_tetrahedralization.hpp"
+#include "core/solid/quotient/validate.hpp"
+#include "core/solid/sector/symmetrise.hpp"
 #include "tests/bench/tetgen_peer.hpp"
 
 namespace symcell::bench {
@@ -24,7 +24,7 @@ namespace {
 constexpr std::int32_t kSectorsTried = 3;
 
 struct Sectors {
-  std::vector<SolidSector> sectors;
+  std::vector<solid::Sector> sectors;
   double volume = 0;  // of the full model
 };
 
@@ -32,17 +32,17 @@ Result<Sectors> cut(const Model& model) {
   ExecutionContext context;
   const MeshOptions options;
   auto source = std::holds_alternative<Plc>(model)
-                    ? symmetrise_plc(std::get<Plc>(model), options, context)
-                    : symmetrise_surface(std::get<TriangleSurface>(model), options, context);
+                    ? solid::symmetrise_plc(std::get<Plc>(model), options, context)
+                    : solid::symmetrise_surface(std::get<TriangleSurface>(model), options, context);
   if (!source) return tl::unexpected<Error>(source.error());
   Sectors result;
   for (std::int32_t c = 0; c < (*source)->candidates(); ++c) {
     auto sector = (*source)->sector(c, context);
     if (!sector) continue;
     if (result.sectors.empty()) {
-      const auto initial = tetrahedralize_sector(*sector, context);
+      const auto initial = solid::tetrahedralize_sector(*sector, context);
       if (!initial) continue;
-      const auto report = validate_tetrahedra(initial->mesh, ValidationLevel::kEmbedding);
+      const auto report = solid::validate(initial->mesh, ValidationLevel::kEmbedding);
       if (!report) return tl::unexpected<Error>(report.error());
       result.volume = report->volume * sector->fold;
     }
@@ -60,7 +60,7 @@ Result<PeerCount> whole(const Model& model, PeerBounds bounds) {
 
 Result<PeerCount> best_sector(const Sectors& sectors, PeerBounds bounds) {
   Result<PeerCount> best = fail(ErrorCode::kTetrahedralizationFailed, "none");
-  for (const SolidSector& sector : sectors.sectors) {
+  for (const solid::Sector& sector : sectors.sectors) {
     const auto matched = mesh_matched_sector(sector, bounds);
     if (!matched) continue;
     const bool better = !best || (matched->matched && !best->matched) ||

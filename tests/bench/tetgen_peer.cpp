@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/geometry/rotation.hpp"
-#include "core/initial/cut_section.hpp"
+#include "core/solid/initial/cut_section.hpp"
 #include "tests/bench/tetgen_run.hpp"
 
 namespace symcell::bench {
@@ -28,7 +28,7 @@ std::size_t at(std::int32_t i) {
 // on the cut, the section on both cuts.
 class Wedge {
  public:
-  explicit Wedge(const SolidSector& sector) : sector_(sector), rotations_(sector.fold) {
+  explicit Wedge(const solid::Sector& sector) : sector_(sector), rotations_(sector.fold) {
     for (const Point3 p : sector.orbit_points) {
       size_ = std::max({size_, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     }
@@ -49,7 +49,7 @@ class Wedge {
       for (const std::int32_t v : chain) image.push_back(section->image[at(v)]);
       add_inside(image, inside);
     }
-    for (const SectorFace& f : sector_.faces) {
+    for (const solid::SectorFace& f : sector_.faces) {
       for (const auto& t : cut_triangle(f.v, inside)) {
         input.facets.push_back({{{t[0], t[1], t[2]}}, {}, f.facet + 1});
       }
@@ -238,13 +238,13 @@ class Wedge {
     const double angle = sector_.start_angle;
     sector_.orbit_points.push_back({q.x * std::cos(angle), q.x * std::sin(angle), q.y});
     sector_.on_axis.push_back(0);
-    sector_.kinds.push_back(SectorVertexKind::kOnFacet);
+    sector_.kinds.push_back(solid::SectorVertexKind::kOnFacet);
     sector_.vertices.push_back({orbit, 0});
     sector_.vertices.push_back({orbit, 1});
     return vertex;
   }
 
-  SolidSector sector_;
+  solid::Sector sector_;
   RotationTable rotations_;
   double size_ = 0;
   std::vector<std::vector<std::int32_t>> chains_;  // per edge of the cut as given
@@ -284,7 +284,7 @@ Result<PeerCount> mesh_whole(const TriangleSurface& surface, PeerBounds bounds) 
   return whole(input, bounds);
 }
 
-Result<PeerCount> mesh_matched_sector(const SolidSector& sector, PeerBounds bounds) {
+Result<PeerCount> mesh_matched_sector(const solid::Sector& sector, PeerBounds bounds) {
   Wedge wedge(sector);
   PeerInput boundary;
   PeerCount unmatched;

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/cell/statistics.hpp"
 #include "core/model/plc.hpp"
 #include "core/model/triangle_surface.hpp"
-#include "core/stats/statistics.hpp"
-#include "core/symmetry/solid_sector.hpp"
+#include "core/solid/sector/sector.hpp"
 
 namespace symcell::bench {
 
@@ -36,6 +36,6 @@ struct PeerCount {
 // angles): the count of the wedge with each cut refined for itself, `matched` false, less than a
 // mesh that matches would have. (With -Y alone on the wedge as cut TetGen adds next to nothing: the
 // coarse boundary is in the way, and neither bound is kept.)
-[[nodiscard]] Result<PeerCount> mesh_matched_sector(const SolidSector& sector, PeerBounds bounds);
+[[nodiscard]] Result<PeerCount> mesh_matched_sector(const solid::Sector& sector, PeerBounds bounds);
 
 }  // namespace symcell::bench

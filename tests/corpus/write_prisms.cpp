@@ -8,7 +8,7 @@
 
 #include "api/formats/mesh_writer.hpp"
 #include "api/formats/plc_json.hpp"
-#include "core/cells/solid_cell.hpp"
+#include "core/solid/cut/cut_cell.hpp"
 #include "tests/support/solid_samples.hpp"
 #include "tests/support/test_files.hpp"
 
@@ -34,19 +34,19 @@ bool write_case(const std::string& base, int i) {
   shape.layers = 2 + i % 3;
   shape.inner_radius = i % 2 == 0 ? 0 : 1;
   shape.inner_facet = shape.layers % 2 == 0 && i % 3 == 0;
-  InitialTetrahedralization solid = test::prism(shape);
+  solid::InitialTetrahedralization solid = test::prism(shape);
   test::random_flips(solid.mesh, 300, static_cast<std::uint64_t>(i));
   test::shuffle_gauge(solid.mesh, static_cast<std::uint64_t>(i));
-  SolidSymmetry symmetry;
+  solid::Symmetry symmetry;
   symmetry.fold = shape.fold;
   if (i % 3 != 0) symmetry.frame = AxisFrame::of_axis({10, -3, 5}, {1, 2, 3});
   ExecutionContext context;
-  const auto cut = cut_solid_cell(solid.mesh, context);
+  const auto cut = solid::cut_cell(solid.mesh, context);
   if (!cut) {
     std::fprintf(stderr, "%s\n", cut.error().message.c_str());
     return false;
   }
-  const SymmetryCellMesh mesh = build_solid_cell_mesh(solid, *cut, symmetry);
+  const SymmetryCellMesh mesh = solid::build_cell_mesh(solid, *cut, symmetry);
   test::write_file(base + ".json",
                    write_plc_json(placed(test::prism_model(shape), symmetry.frame)));
   for (const MeshPart part : {MeshPart::kCell, MeshPart::kFull}) {

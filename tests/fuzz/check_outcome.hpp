@@ -11,8 +11,8 @@
 
 #include "api/formats/mesh_writer.hpp"
 #include "api/formats/vtu_reader.hpp"
-#include "core/cells/verify_mesh.hpp"
 #include "core/mesh_model.hpp"
+#include "core/verify/verify_mesh.hpp"
 #include "tests/fuzz/fuzz_support.hpp"
 
 namespace symcell::fuzz {

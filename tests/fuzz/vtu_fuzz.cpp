@@ -1,5 +1,5 @@
 #include "api/formats/vtu_reader.hpp"
-#include "core/cells/verify_mesh.hpp"
+#include "core/verify/verify_mesh.hpp"
 #include "tests/fuzz/fuzz_support.hpp"
 
 // Whatever can be read can be checked.

@@ -6,7 +6,7 @@
 
 #include "api/problem.hpp"
 #include "api/schema/options.hpp"
-#include "core/cells/quadratic.hpp"
+#include "core/cell/quadratic.hpp"
 #include "tests/golden/golden.hpp"
 #include "tests/support/extruded_cells.hpp"
 #include "tests/support/sample_cells.hpp"

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/cells/full_mesh.hpp"
+#include "core/cell/full_mesh.hpp"
 #include "core/geometry/point_tree.hpp"
 
 namespace symcell {

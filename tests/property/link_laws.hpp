@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/cells/symmetry_cell_mesh.hpp"
+#include "core/cell/symmetry_cell_mesh.hpp"
 #include "tests/support/model_topology.hpp"
 
 namespace symcell {

@@ -9,9 +9,9 @@
 #include <set>
 #include <sstream>
 
-#include "core/cells/full_mesh.hpp"
+#include "core/cell/full_mesh.hpp"
 #include "core/geometry/predicates.hpp"
-#include "core/model/subdomains.hpp"
+#include "core/plane/input/subdomains.hpp"
 #include "tests/property/planar_link_laws.hpp"
 #include "tests/property/restored_mesh.hpp"
 
@@ -211,12 +211,12 @@ class LawChecker {
   // Finds the nodes of the model's vertices and the chains of edges of its segments.
   bool map_model() {
     ExecutionContext context;
-    const auto subdomains = make_subdomains(model_, context);
+    const auto subdomains = plane::make_subdomains(model_, context);
     if (!subdomains) {
       complain("model: ", subdomains.error().message);
       return false;
     }
-    const PlanarMap& map = subdomains->map;
+    const plane::PlanarMap& map = subdomains->map;
     std::vector<char> meshed(model_.vertices.size(), 0);
     std::vector<std::array<std::int64_t, 2>> rim;
     for (std::size_t p = 0; p < map.pieces.size(); ++p) {

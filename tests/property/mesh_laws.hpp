@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh_pslg.hpp"
+#include "core/plane/mesh_pslg.hpp"
 
 namespace symcell {
 

@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "core/base/execution_context.hpp"
-#include "core/mesh_pslg.hpp"
-#include "core/symmetry/symmetrise.hpp"
+#include "core/plane/mesh_pslg.hpp"
+#include "core/plane/symmetry/symmetrise.hpp"
 #include "tests/property/mesh_laws.hpp"
 #include "tests/property/random_case.hpp"
 
@@ -17,7 +17,7 @@ Result<MeshOutcome> mesh(const Pslg& model, const MeshOptions& options) {
   ExecutionContext context;
   context.set_max_elements(options.max_elements);
   context.set_time_limit(options.time_limit_s);
-  return mesh_pslg(model, options, context);
+  return plane::mesh_pslg(model, options, context);
 }
 
 template <class T>
@@ -139,7 +139,7 @@ TEST(MeshPslgProperty, RegularModelsKeepTheLaws) {
                                     std::to_string(n) + ", fold " + std::to_string(fold) +
                                     ", min_angle " + std::to_string(angle);
           ExecutionContext context;
-          const auto inspection = inspect_pslg(model, options, context);
+          const auto inspection = plane::inspect_pslg(model, options, context);
           ASSERT_TRUE(inspection) << label << ": " << inspection.error().message;
           const auto outcome = mesh(model, options);
           ASSERT_TRUE(outcome) << label << ": " << outcome.error().message;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/mesh_solid.hpp"
-#include "core/symmetry/symmetrise_solid.hpp"
+#include "core/solid/mesh_solid.hpp"
+#include "core/solid/sector/symmetrise.hpp"
 #include "tests/property/solid_laws.hpp"
 #include "tests/support/plc_builders.hpp"
 
@@ -49,9 +49,9 @@ void expect_lawful(const Plc& plc, std::int32_t fold, double volume) {
       MeshOptions options;
       options.fold = n;
       if (share > 0) options.max_volume = volume / share;
-      const auto source = symmetrise_plc(plc, options, context);
+      const auto source = solid::symmetrise_plc(plc, options, context);
       ASSERT_TRUE(source) << source.error().message;
-      const auto outcome = mesh_solid(**source, options, context);
+      const auto outcome = solid::mesh_solid(**source, options, context);
       ASSERT_TRUE(outcome) << outcome.error().message;
       for (const std::string& law : broken_solid_laws(model, options, *outcome)) {
         ADD_FAILURE() << law;
@@ -128,9 +128,9 @@ TEST(MeshSolidSpecial, CavitiesWithLooseEnds) {
   ExecutionContext context;
   MeshOptions options;
   options.fold = 4;
-  const auto source = symmetrise_plc(plc, options, context);
+  const auto source = solid::symmetrise_plc(plc, options, context);
   ASSERT_TRUE(source) << source.error().message;
-  const auto outcome = mesh_solid(**source, options, context);
+  const auto outcome = solid::mesh_solid(**source, options, context);
   ASSERT_TRUE(outcome) << outcome.error().message;
   EXPECT_NEAR(4 * outcome->statistics.cell.measure, 56, 1e-9);
 }

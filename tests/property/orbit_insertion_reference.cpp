@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "core/cells/full_mesh.hpp"
+#include "core/cell/full_mesh.hpp"
 
 namespace symcell {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/cells/symmetry_cell_mesh.hpp"
+#include "core/cell/symmetry_cell_mesh.hpp"
 #include "core/geometry/point.hpp"
 
 namespace symcell {

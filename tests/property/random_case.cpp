@@ -53,8 +53,8 @@ void choose_options(Chance& chance, RandomCase& c) {
   if (chance(0.2)) c.options.fold = c.traits.fold;
   c.options.max_elements = kMaxElements;
   c.options.time_limit_s = kTimeLimitSeconds;
-  c.must_succeed = c.options.min_angle_deg <=
-                   (c.options.plain ? kSurePlainAngleDeg : kSureImprovedAngleDeg);
+  c.must_succeed =
+      c.options.min_angle_deg <= (c.options.plain ? kSurePlainAngleDeg : kSureImprovedAngleDeg);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "tests/property/restored_mesh.hpp"
 
-#include "core/cells/full_mesh.hpp"
+#include "core/cell/full_mesh.hpp"
 
 namespace symcell {
 

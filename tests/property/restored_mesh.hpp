@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/cells/symmetry_cell_mesh.hpp"
+#include "core/cell/symmetry_cell_mesh.hpp"
 #include "core/geometry/point.hpp"
 
 namespace symcell {

@@ -5,8 +5,8 @@
 
 #include "core/base/execution_context.hpp"
 #include "core/base/random.hpp"
-#include "core/mesh_solid.hpp"
-#include "core/symmetry/symmetrise_solid.hpp"
+#include "core/solid/mesh_solid.hpp"
+#include "core/solid/sector/symmetrise.hpp"
 
 namespace symcell {
 
@@ -49,9 +49,9 @@ Result<MeshOutcome> mesh(const SolidCase& c) {
   ExecutionContext context;
   context.set_max_elements(c.options.max_elements);
   context.set_time_limit(c.options.time_limit_s);
-  auto source = symmetrise_plc(c.model.plc, c.options, context);
+  auto source = solid::symmetrise_plc(c.model.plc, c.options, context);
   if (!source) return tl::unexpected(source.error());
-  return mesh_solid(**source, c.options, context);
+  return solid::mesh_solid(**source, c.options, context);
 }
 
 }  // namespace symcell

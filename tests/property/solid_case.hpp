@@ -5,8 +5,8 @@
 #include <ostream>
 
 #include "core/base/error.hpp"
-#include "core/mesh_pslg.hpp"
 #include "core/model/mesh_options.hpp"
+#include "core/plane/mesh_pslg.hpp"
 #include "tests/support/random_plc.hpp"
 
 namespace symcell {

@@ -9,11 +9,11 @@
 #include <sstream>
 #include <utility>
 
-#include "core/cells/full_mesh.hpp"
+#include "core/cell/full_mesh.hpp"
 #include "core/geometry/point_tree.hpp"
 #include "core/geometry/predicates_3.hpp"
-#include "core/model/validate_plc.hpp"
-#include "core/refine/tet_measures.hpp"
+#include "core/geometry/tet_measures.hpp"
+#include "core/solid/plc/validate_plc.hpp"
 #include "tests/property/link_laws.hpp"
 
 namespace symcell {
@@ -158,7 +158,7 @@ class SolidLaws {
 
   void check_model() {
     ExecutionContext context;
-    const auto valid = validate_plc(model_.plc, context);
+    const auto valid = solid::validate_plc(model_.plc, context);
     if (!valid) {
       broken("model: ", valid.error().message);
       return;
@@ -166,7 +166,7 @@ class SolidLaws {
     std::map<std::int32_t, double> expected, found;
     double volume = 0;
     for (std::size_t c = 1; c < valid->cells.cells.size(); ++c) {
-      const PlcCell& cell = valid->cells.cells[c];
+      const solid::PlcCell& cell = valid->cells.cells[c];
       if (!cell.meshed) continue;
       const std::int32_t attribute =
           cell.region < 0 ? 0 : valid->complex.regions[idx(cell.region)].attribute;
@@ -197,13 +197,13 @@ class SolidLaws {
   }
 
   // What bounds holes and the outside alone is no part of the mesh.
-  void find_meshed_facets(const ValidPlc& valid) {
-    const PlcComplex& complex = valid.complex;
+  void find_meshed_facets(const solid::ValidPlc& valid) {
+    const solid::PlcComplex& complex = valid.complex;
     std::vector<std::uint8_t> in_facet(complex.edges.size(), 0);
     meshed_edge_.assign(complex.edges.size(), 0);
     meshed_point_.assign(complex.points.size(), 0);
     for (std::size_t f = 0; f < complex.facets.size(); ++f) {
-      const ComplexFacet& facet = complex.facets[f];
+      const solid::ComplexFacet& facet = complex.facets[f];
       auto& meshed = meshed_triangle_.emplace_back();
       for (const auto& sides : valid.cells.sides[f]) {
         meshed.push_back(
@@ -224,7 +224,7 @@ class SolidLaws {
     }
   }
 
-  void check_vertices(const PlcComplex& complex) {
+  void check_vertices(const solid::PlcComplex& complex) {
     const PointTree tree(points_);
     std::vector<std::int64_t> node;
     for (std::size_t i = 0; i < complex.points.size(); ++i) {
@@ -243,7 +243,7 @@ class SolidLaws {
     const Point3 margin{tolerance(), tolerance(), tolerance()};
     for (std::size_t i = 0; i < complex.edges.size(); ++i) {
       if (meshed_edge_[i] == 0) continue;
-      const ComplexEdge& e = complex.edges[i];
+      const solid::ComplexEdge& e = complex.edges[i];
       const Point3 a = complex.points[idx(e.a)];
       const Point3 u = complex.points[idx(e.b)] - a;
       const Point3 low{std::min(a.x, a.x + u.x), std::min(a.y, a.y + u.y),
@@ -272,7 +272,7 @@ class SolidLaws {
   }
 
   // Every boundary face lies on a facet of its marker, and every facet has its area of them.
-  void check_facets(const PlcComplex& complex) {
+  void check_facets(const solid::PlcComplex& complex) {
     std::vector<FacetArea> facets;
     double total = 0;
     for (std::size_t f = 0; f < complex.facets.size(); ++f) {
@@ -320,13 +320,13 @@ class SolidLaws {
   };
 
   // The facet of this marker that has the face; their number if none has.
-  [[nodiscard]] std::size_t facet_of(const PlcComplex& complex,
+  [[nodiscard]] std::size_t facet_of(const solid::PlcComplex& complex,
                                      const std::vector<FacetArea>& facets,
                                      const std::array<Point3, 3>& corners,
                                      std::int32_t marker) const {
     const Point3 middle = (1.0 / 3) * (corners[0] + corners[1] + corners[2]);
     for (std::size_t f = 0; f < facets.size(); ++f) {
-      const ComplexFacet& facet = complex.facets[f];
+      const solid::ComplexFacet& facet = complex.facets[f];
       if (facet.marker != marker || !facets[f].has(middle, tolerance())) continue;
       const Point3 base = complex.points[idx(facet.graph.segments.front()[0])];
       const bool flat = std::all_of(corners.begin(), corners.end(), [&](Point3 x) {

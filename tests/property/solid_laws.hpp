@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh_pslg.hpp"
+#include "core/plane/mesh_pslg.hpp"
 #include "tests/support/random_plc.hpp"
 
 namespace symcell {

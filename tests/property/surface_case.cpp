@@ -5,10 +5,10 @@
 
 #include "api/formats/vtu_reader.hpp"
 #include "core/base/random.hpp"
-#include "core/cells/verify_mesh.hpp"
-#include "core/mesh_solid.hpp"
-#include "core/surface/indexed_surface.hpp"
-#include "core/symmetry/symmetrise_solid.hpp"
+#include "core/geometry/indexed_surface.hpp"
+#include "core/solid/mesh_solid.hpp"
+#include "core/solid/sector/symmetrise.hpp"
+#include "core/verify/verify_mesh.hpp"
 #include "tests/property/link_laws.hpp"
 #include "tests/support/written_mesh.hpp"
 
@@ -52,9 +52,9 @@ Result<MeshedSurface> mesh(const SurfaceCase& c) {
   ExecutionContext context;
   context.set_max_elements(1'000'000);
   context.set_time_limit(120);
-  auto source = symmetrise_surface(c.model.surface, c.options, context);
+  auto source = solid::symmetrise_surface(c.model.surface, c.options, context);
   if (!source) return tl::unexpected(source.error());
-  auto outcome = mesh_solid(**source, c.options, context);
+  auto outcome = solid::mesh_solid(**source, c.options, context);
   if (!outcome) return tl::unexpected(outcome.error());
   return MeshedSurface{std::move(*outcome), (*source)->symmetry().error_rel};
 }

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "core/base/error.hpp"
-#include "core/mesh_pslg.hpp"
 #include "core/model/mesh_options.hpp"
+#include "core/plane/mesh_pslg.hpp"
 #include "tests/support/random_surface.hpp"
 
 namespace symcell {

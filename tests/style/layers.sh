@@ -28,7 +28,7 @@ forbid core 'the core knows no other layer' 'api/|server/|tests/'
 forbid core 'the core reads and writes nothing' "$json|$http|$logging|$files|$stores"
 forbid core 'the core starts no threads' "$threads"
 forbid core 'CGAL stays behind a few files: it costs 10 s a file that includes it' 'CGAL/' \
-  'core/geometry/(predicates|predicates_3|facet_triangulation)\.cpp|core/model/plc_intersections\.cpp|core/surface/(self_intersections|mend_surface)\.cpp|core/initial/[a-z_]+\.[ch]pp'
+  'core/geometry/(predicates|predicates_3|facet_triangulation)\.cpp|core/solid/plc/plc_intersections\.cpp|core/surface/(self_intersections|mend_surface)\.cpp|core/initial/[a-z_]+\.[ch]pp'
 forbid api 'api knows no server' 'server/|tests/'
 forbid api 'api knows no sockets, threads or stores' "$http|$threads|$stores|$logging"
 forbid api 'api does no geometry' "CGAL/|core/(tds|delaunay|initial|refine|improve)/"

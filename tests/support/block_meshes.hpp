@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/cells/mesh_data.hpp"
 #include "core/model/plc.hpp"
 #include "core/model/pslg.hpp"
 #include "core/model/triangle_surface.hpp"
+#include "core/verify/mesh_data.hpp"
 
 namespace symcell::test {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/cells/full_mesh.hpp"
+#include "core/cell/full_mesh.hpp"
 #include "tests/support/sample_cells.hpp"
 
 namespace symcell::test {

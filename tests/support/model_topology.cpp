@@ -57,7 +57,7 @@ BoundaryTopology boundary_topology(const TriangleSurface& surface) {
   return boundary_topology(triangles);
 }
 
-BoundaryTopology boundary_topology(const ValidPlc& valid) {
+BoundaryTopology boundary_topology(const solid::ValidPlc& valid) {
   const auto meshed = [&](std::int32_t cell) {
     return valid.cells.cells[static_cast<std::size_t>(cell)].meshed;
   };

@@ -9,7 +9,7 @@
 
 #include "core/geometry/point.hpp"
 #include "core/model/triangle_surface.hpp"
-#include "core/model/validate_plc.hpp"
+#include "core/solid/plc/validate_plc.hpp"
 
 namespace symcell::test {
 
@@ -35,6 +35,6 @@ struct BoundaryTopology {
 // Vertices at one place are one.
 [[nodiscard]] BoundaryTopology boundary_topology(const TriangleSurface& surface);
 // Of what is meshed.
-[[nodiscard]] BoundaryTopology boundary_topology(const ValidPlc& valid);
+[[nodiscard]] BoundaryTopology boundary_topology(const solid::ValidPlc& valid);
 
 }  // namespace symcell::test

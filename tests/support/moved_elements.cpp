@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/cells/full_mesh.hpp"
+#include "core/cell/full_mesh.hpp"
 
 namespace symcell::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "core/cells/symmetry_cell_mesh.hpp"
+#include "core/cell/symmetry_cell_mesh.hpp"
 
 namespace symcell::test {
 

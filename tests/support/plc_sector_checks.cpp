@@ -61,7 +61,7 @@ double volume_of(const RestoredSurface& surface,
 
 }  // namespace
 
-RestoredSurface restore_surface(const SolidSector& sector) {
+RestoredSurface restore_surface(const solid::Sector& sector) {
   const RotationTable rotations(sector.fold);
   RestoredSurface surface;
   surface.facet_area.assign(sector.facet_markers.size(), 0);
@@ -78,7 +78,7 @@ RestoredSurface restore_surface(const SolidSector& sector) {
   std::map<Pair, std::vector<Pair>> faces_of;  // edge -> (face, direction)
   std::set<std::array<std::int32_t, 3>> known;
   for (std::int32_t k = 0; k < sector.fold; ++k) {
-    for (const SectorFace& face : sector.faces) {
+    for (const solid::SectorFace& face : sector.faces) {
       const std::array<std::int32_t, 3> v{vertex(face.v[0], k), vertex(face.v[1], k),
                                           vertex(face.v[2], k)};
       std::array<std::int32_t, 3> sorted = v;
@@ -97,7 +97,7 @@ RestoredSurface restore_surface(const SolidSector& sector) {
       EXPECT_GT(area, 0) << "a face without area";
       surface.facet_area[at(face.facet)] += area;
     }
-    for (const SectorEdge& edge : sector.edges) {
+    for (const solid::SectorEdge& edge : sector.edges) {
       if (k > 0 && sector.on_axis[at(sector.vertices[at(edge.a)].orbit)] != 0 &&
           sector.on_axis[at(sector.vertices[at(edge.b)].orbit)] != 0) {
         continue;
@@ -115,7 +115,7 @@ RestoredSurface restore_surface(const SolidSector& sector) {
   return surface;
 }
 
-void expect_sound_sector(const SolidSector& sector) {
+void expect_sound_sector(const solid::Sector& sector) {
   ASSERT_EQ(sector.kinds.size(), sector.orbit_points.size());
   ASSERT_EQ(sector.on_axis.size(), sector.orbit_points.size());
   const RotationTable rotations(sector.fold);
@@ -145,13 +145,13 @@ void expect_sound_sector(const SolidSector& sector) {
   }
 
   std::map<Pair, std::vector<std::int32_t>> faces_of;
-  for (const SectorFace& face : sector.faces) {
+  for (const solid::SectorFace& face : sector.faces) {
     for (std::size_t i = 0; i < 3; ++i) {
       faces_of[sorted_pair(face.v[i], face.v[(i + 1) % 3])].push_back(face.facet);
     }
   }
   std::set<Pair> segments;
-  for (const SectorEdge& e : sector.edges) {
+  for (const solid::SectorEdge& e : sector.edges) {
     EXPECT_TRUE(segments.insert(sorted_pair(e.a, e.b)).second) << "an edge occurs twice";
     ASSERT_LT(at(e.segment), sector.segment_markers.size());
   }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/geometry/point.hpp"
-#include "core/symmetry/solid_sector.hpp"
+#include "core/solid/sector/sector.hpp"
 
 namespace symcell::test {
 
@@ -22,9 +22,9 @@ struct RestoredSurface {
   double segment_length = 0;       // of all copies of all edges
 };
 
-[[nodiscard]] RestoredSurface restore_surface(const SolidSector& sector);
+[[nodiscard]] RestoredSurface restore_surface(const solid::Sector& sector);
 
 // gtest expectations on the invariants of the contract.
-void expect_sound_sector(const SolidSector& sector);
+void expect_sound_sector(const solid::Sector& sector);
 
 }  // namespace symcell::test

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/geometry/facet_triangulation.hpp"
-#include "core/surface/indexed_surface.hpp"
+#include "core/geometry/indexed_surface.hpp"
 #include "tests/support/layered_facets.hpp"
 #include "tests/support/placement.hpp"
 #include "tests/support/random_layers.hpp"

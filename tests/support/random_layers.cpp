@@ -153,8 +153,8 @@ class PlcMaker {
         for (const OutlineCorner& c : loop) {
           const bool must =
               !c.straight || (needed[at(c.vertex)] == kCrossing && index[at(c.vertex)] < 0);
-          bool keep = needed[at(c.vertex)] != 0 ? must || chance(listed)
-                                                : stays(vertex_orbit(c.vertex));
+          bool keep =
+              needed[at(c.vertex)] != 0 ? must || chance(listed) : stays(vertex_orbit(c.vertex));
           if (times[c.vertex] > 1 || (needed[at(c.vertex)] != 0 && !options_.touching)) keep = true;
           if (keep) polygon.push_back(use(c.vertex));
         }

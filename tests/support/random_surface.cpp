@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/random.hpp"
-#include "core/surface/indexed_surface.hpp"
+#include "core/geometry/indexed_surface.hpp"
 #include "tests/support/surface_builders.hpp"
 
 namespace symcell::test {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/geometry/rotation.hpp"
-#include "core/surface/triangle_tree.hpp"
+#include "core/geometry/triangle_tree.hpp"
 
 namespace symcell {
 namespace {
@@ -21,7 +21,7 @@ Edge undirected(std::int32_t a, std::int32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-std::vector<Point3> copy_of(const SolidSector& sector, std::int32_t exponent) {
+std::vector<Point3> copy_of(const solid::Sector& sector, std::int32_t exponent) {
   const RotationTable rotations(sector.fold);
   std::vector<Point3> points;
   for (const OrbitVertex& v : sector.vertices) {
@@ -33,7 +33,7 @@ std::vector<Point3> copy_of(const SolidSector& sector, std::int32_t exponent) {
 
 }  // namespace
 
-std::vector<std::string> sector_faults(const SolidSector& sector) {
+std::vector<std::string> sector_faults(const solid::Sector& sector) {
   std::vector<std::string> faults;
   std::vector<std::int32_t> higher(sector.orbit_points.size(), -1);
   for (std::size_t i = 0; i < sector.vertices.size(); ++i) {
@@ -63,7 +63,7 @@ std::vector<std::string> sector_faults(const SolidSector& sector) {
   if (cut.size() != 2 * sector.lower_cut.size()) faults.push_back("edges of the cut coincide");
   std::map<Edge, std::array<int, 2>> uses;
   std::map<Edge, std::vector<std::int32_t>> facets;
-  for (const SectorFace& f : sector.faces) {
+  for (const solid::SectorFace& f : sector.faces) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::int32_t a = f.v[i], b = f.v[(i + 1) % 3];
       ++uses[undirected(a, b)][a < b ? 0 : 1];
@@ -71,7 +71,7 @@ std::vector<std::string> sector_faults(const SolidSector& sector) {
     }
   }
   std::set<Edge> edges;
-  for (const SectorEdge& e : sector.edges) edges.insert(undirected(e.a, e.b));
+  for (const solid::SectorEdge& e : sector.edges) edges.insert(undirected(e.a, e.b));
   for (const auto& [edge, count] : uses) {
     const bool at_cut = cut.count(edge) > 0;
     if (count[0] + count[1] != (at_cut ? 1 : 2) || (!at_cut && count[0] != count[1])) {
@@ -96,7 +96,7 @@ std::vector<std::string> sector_faults(const SolidSector& sector) {
   for (std::size_t i = 0; i < sector.faces.size(); ++i) {
     members[sector.faces[i].facet].push_back(static_cast<std::int32_t>(i));
   }
-  for (const SectorFace& f : sector.faces) {
+  for (const solid::SectorFace& f : sector.faces) {
     if (!(length(area_normal(points[f.v[0]], points[f.v[1]], points[f.v[2]])) > 0)) {
       faults.push_back("a face has no area");
     }
@@ -120,8 +120,8 @@ std::vector<std::string> sector_faults(const SolidSector& sector) {
   return faults;
 }
 
-SectorFigures measure_sector(const SolidSector& sector,
-                             const SolidSymmetry& symmetry,
+SectorFigures measure_sector(const solid::Sector& sector,
+                             const solid::Symmetry& symmetry,
                              const TriangleSurface& input) {
   SectorFigures figures;
   std::vector<Point3> given;
@@ -133,7 +133,7 @@ SectorFigures measure_sector(const SolidSector& sector,
     const std::vector<Point3> points = copy_of(sector, k);
     const auto first = static_cast<std::int32_t>(all.size());
     all.insert(all.end(), points.begin(), points.end());
-    for (const SectorFace& f : sector.faces) {
+    for (const solid::SectorFace& f : sector.faces) {
       const Point3 a = points[f.v[0]], b = points[f.v[1]], c = points[f.v[2]];
       figures.volume += dot(a, cross(b, c)) / 6;
       for (const Point3& p : {a, b, c, (1.0 / 3) * (a + b + c)}) {

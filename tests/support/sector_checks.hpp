@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/model/triangle_surface.hpp"
-#include "core/symmetry/sector_source.hpp"
+#include "core/solid/sector/sector_source.hpp"
 
 namespace symcell {
 
@@ -16,10 +16,10 @@ struct SectorFigures {
 };
 
 // What is wrong with the sector as such, a sentence each; empty: nothing.
-[[nodiscard]] std::vector<std::string> sector_faults(const SolidSector& sector);
+[[nodiscard]] std::vector<std::string> sector_faults(const solid::Sector& sector);
 
-[[nodiscard]] SectorFigures measure_sector(const SolidSector& sector,
-                                           const SolidSymmetry& symmetry,
+[[nodiscard]] SectorFigures measure_sector(const solid::Sector& sector,
+                                           const solid::Symmetry& symmetry,
                                            const TriangleSurface& input);
 
 }  // namespace symcell

@@ -9,7 +9,7 @@
 
 #include "core/base/assert.hpp"
 #include "core/base/random.hpp"
-#include "core/delaunay/lifted_predicates_3.hpp"
+#include "core/solid/quotient/lifted_predicates.hpp"
 
 namespace symcell::test {
 namespace {
@@ -25,8 +25,8 @@ class PrismBuilder {
  public:
   explicit PrismBuilder(const PrismShape& shape) : s_(shape), hole_(shape.inner_radius > 0) {}
 
-  InitialTetrahedralization build() {
-    out_.mesh = QuotientTetrahedralization(s_.fold);
+  solid::InitialTetrahedralization build() {
+    out_.mesh = solid::QuotientTetrahedralization(s_.fold);
     const std::int32_t facets = 2 + s_.steps * (hole_ ? 2 : 1) + (s_.inner_facet ? 1 : 0);
     for (std::int32_t f = 0; f < facets; ++f) out_.facet_markers.push_back(f + 1);
     plate_ = facets - 1;
@@ -53,7 +53,7 @@ class PrismBuilder {
   [[nodiscard]] bool is_inner(Column c) const { return hole_ && c.i == 0; }
 
   void add_vertices() {
-    QuotientTetrahedralization& mesh = out_.mesh;
+    solid::QuotientTetrahedralization& mesh = out_.mesh;
     for (std::int32_t layer = 0; layer <= s_.layers; ++layer) {
       const double z = s_.height * layer / s_.layers;
       const bool end = layer == 0 || layer == s_.layers;
@@ -61,16 +61,16 @@ class PrismBuilder {
       if (!hole_) {
         const bool axis = s_.fold > 1;
         if (!axis && (end || plate)) {
-          mesh.add_vertex({0, 0, z}, SolidVertexKind::kFacet, false,
+          mesh.add_vertex({0, 0, z}, solid::VertexKind::kFacet, false,
                           plate        ? plate_
                           : layer == 0 ? 0
                                        : 1);
         } else if (end || plate) {
-          mesh.add_vertex({0, 0, z}, SolidVertexKind::kInput, true);
+          mesh.add_vertex({0, 0, z}, solid::VertexKind::kInput, true);
         } else if (axis) {
-          mesh.add_vertex({0, 0, z}, SolidVertexKind::kSegment, true, kAxisSegment);
+          mesh.add_vertex({0, 0, z}, solid::VertexKind::kSegment, true, kAxisSegment);
         } else {
-          mesh.add_vertex({0, 0, z}, SolidVertexKind::kFree, false);
+          mesh.add_vertex({0, 0, z}, solid::VertexKind::kFree, false);
         }
       }
       for (std::int32_t i = first_ring(); i <= s_.rings; ++i) {
@@ -84,13 +84,16 @@ class PrismBuilder {
               (side ? 0 : s_.swirl * (s_.rings - i));
           const Point3 p{radius * std::cos(angle), radius * std::sin(angle), z};
           if (side && (end || plate)) {
-            mesh.add_vertex(p, SolidVertexKind::kInput, false);
+            mesh.add_vertex(p, solid::VertexKind::kInput, false);
           } else if (side) {
-            mesh.add_vertex(p, SolidVertexKind::kSegment, false, upright(c));
+            mesh.add_vertex(p, solid::VertexKind::kSegment, false, upright(c));
           } else if (end || plate) {
-            mesh.add_vertex(p, SolidVertexKind::kFacet, false, plate ? plate_ : layer == 0 ? 0 : 1);
+            mesh.add_vertex(p, solid::VertexKind::kFacet, false,
+                            plate        ? plate_
+                            : layer == 0 ? 0
+                                         : 1);
           } else {
-            mesh.add_vertex(p, SolidVertexKind::kFree, false);
+            mesh.add_vertex(p, solid::VertexKind::kFree, false);
           }
         }
       }
@@ -107,7 +110,7 @@ class PrismBuilder {
     return 1 + 4 * s_.steps + (is_outer(c) ? 0 : s_.steps) + place(c.j);
   }
 
-  [[nodiscard]] Corner corner(Column c, std::int32_t layer) const {
+  [[nodiscard]] OrbitVertex corner(Column c, std::int32_t layer) const {
     const std::int32_t rings = s_.rings - first_ring() + 1;
     const std::int32_t base = layer * (rings * s_.steps + (hole_ ? 0 : 1));
     if (is_axis(c)) return {base, 0};
@@ -143,7 +146,7 @@ class PrismBuilder {
       std::size_t n = 0;
       for (std::size_t m = 0; m + turn <= 2; ++m) c3[n++] = {column[m], 0};
       for (std::size_t m = 2 - turn; m <= 2; ++m) c3[n++] = {column[m], 1};
-      NewTet t;
+      solid::NewTet t;
       const auto fill = [&] {
         for (std::size_t i = 0; i < 4; ++i) t.c[i] = corner(c3[i].column, layer + c3[i].up);
       };
@@ -155,9 +158,10 @@ class PrismBuilder {
       }
       t.region = s_.inner_facet && 2 * layer >= s_.layers ? 1 : 0;
       for (std::size_t f = 0; f < 4; ++f) {
-        t.facet[f] = facet(c3[kFaceCorners[f][0]].column, layer + c3[kFaceCorners[f][0]].up,
-                           c3[kFaceCorners[f][1]].column, layer + c3[kFaceCorners[f][1]].up,
-                           c3[kFaceCorners[f][2]].column, layer + c3[kFaceCorners[f][2]].up);
+        t.facet[f] =
+            facet(c3[solid::kFaceCorners[f][0]].column, layer + c3[solid::kFaceCorners[f][0]].up,
+                  c3[solid::kFaceCorners[f][1]].column, layer + c3[solid::kFaceCorners[f][1]].up,
+                  c3[solid::kFaceCorners[f][2]].column, layer + c3[solid::kFaceCorners[f][2]].up);
       }
       tets_.push_back(t);
     }
@@ -168,17 +172,17 @@ class PrismBuilder {
     if (za == zb && zb == zc) {
       if (za == 0) return 0;
       if (za == s_.layers) return 1;
-      return s_.inner_facet && 2 * za == s_.layers ? plate_ : kNoFacet;
+      return s_.inner_facet && 2 * za == s_.layers ? plate_ : solid::kNoFacet;
     }
     const std::int32_t j = std::min({a.j, b.j, c.j});
     if (is_outer(a) && is_outer(b) && is_outer(c)) return 2 + place(j);
     if (is_inner(a) && is_inner(b) && is_inner(c)) return 2 + s_.steps + place(j);
-    return kNoFacet;
+    return solid::kNoFacet;
   }
 
   void add_segments() {
-    QuotientTetrahedralization& mesh = out_.mesh;
-    const auto set = [&](Corner a, Corner b, std::int32_t segment) {
+    solid::QuotientTetrahedralization& mesh = out_.mesh;
+    const auto set = [&](OrbitVertex a, OrbitVertex b, std::int32_t segment) {
       mesh.set_segment(mesh.edge_key(a, b), segment);
     };
     for (std::int32_t layer = 0; layer <= s_.layers; ++layer) {
@@ -202,21 +206,24 @@ class PrismBuilder {
   PrismShape s_;
   bool hole_;
   std::int32_t plate_ = 0;
-  InitialTetrahedralization out_;
-  std::vector<NewTet> tets_;
+  solid::InitialTetrahedralization out_;
+  std::vector<solid::NewTet> tets_;
 };
 
-std::vector<Corner> others(const QuotientTetrahedralization& mesh, TetCopy c, Corner a, Corner b) {
-  std::vector<Corner> result;
+std::vector<OrbitVertex> others(const solid::QuotientTetrahedralization& mesh,
+                                solid::TetCopy c,
+                                OrbitVertex a,
+                                OrbitVertex b) {
+  std::vector<OrbitVertex> result;
   for (std::uint32_t i = 0; i < 4; ++i) {
-    const Corner x = mesh.corner(c, i);
+    const OrbitVertex x = mesh.corner(c, i);
     if (!(x == a) && !(x == b)) result.push_back(x);
   }
   return result;
 }
 
 // Not flat either: 6 V against the longest edge cubed.
-bool positive(const QuotientTetrahedralization& mesh, const NewTet& t) {
+bool positive(const solid::QuotientTetrahedralization& mesh, const solid::NewTet& t) {
   constexpr double kLeastVolume = 1e-6;
   const Point3 a = mesh.lift(t.c[0]);
   const Point3 u = mesh.lift(t.c[1]) - a, v = mesh.lift(t.c[2]) - a, w = mesh.lift(t.c[3]) - a;
@@ -226,16 +233,18 @@ bool positive(const QuotientTetrahedralization& mesh, const NewTet& t) {
 }
 
 // Replaces the two tetrahedra at a face by three round the new edge.
-bool flip_23(QuotientTetrahedralization& mesh, TetId t, std::uint32_t i) {
-  const Tet& tet = mesh.tet(t);
-  if (tet.nb[i] == kNoHalfFace || tet.facet[i] != kNoFacet || tet_of(tet.nb[i]) == t) return false;
-  const TetCopy g = mesh.neighbour({t, 0}, i);
-  const Corner top = mesh.corner(t, i), foot = mesh.corner(g, face_of(tet.nb[i]));
-  std::array<NewTet, 3> added;
+bool flip_23(solid::QuotientTetrahedralization& mesh, solid::TetId t, std::uint32_t i) {
+  const solid::Tet& tet = mesh.tet(t);
+  if (tet.nb[i] == solid::kNoHalfFace || tet.facet[i] != solid::kNoFacet ||
+      solid::tet_of(tet.nb[i]) == t)
+    return false;
+  const solid::TetCopy g = mesh.neighbour({t, 0}, i);
+  const OrbitVertex top = mesh.corner(t, i), foot = mesh.corner(g, solid::face_of(tet.nb[i]));
+  std::array<solid::NewTet, 3> added;
   for (std::uint32_t m = 0; m < 3; ++m) {
-    NewTet& n = added[m];
-    n.c[0] = mesh.corner(t, kFaceCorners[i][m]);
-    n.c[1] = mesh.corner(t, kFaceCorners[i][(m + 1) % 3]);
+    solid::NewTet& n = added[m];
+    n.c[0] = mesh.corner(t, solid::kFaceCorners[i][m]);
+    n.c[1] = mesh.corner(t, solid::kFaceCorners[i][(m + 1) % 3]);
     n.c[2] = foot;
     n.c[3] = top;
     n.region = tet.region;
@@ -244,40 +253,41 @@ bool flip_23(QuotientTetrahedralization& mesh, TetId t, std::uint32_t i) {
   }
   // All on one side of the new edge each: the two tetrahedra make a convex body.
   for (std::uint32_t m = 0; m < 3; ++m) {
-    const Corner a = mesh.corner(t, kFaceCorners[i][m]);
-    const Corner b = mesh.corner(t, kFaceCorners[i][(m + 1) % 3]);
-    if (orientation_3(mesh, foot, top, a, b) != orientation_3(mesh, foot, top,
-                                                              mesh.corner(t, kFaceCorners[i][0]),
-                                                              mesh.corner(t, kFaceCorners[i][1]))) {
+    const OrbitVertex a = mesh.corner(t, solid::kFaceCorners[i][m]);
+    const OrbitVertex b = mesh.corner(t, solid::kFaceCorners[i][(m + 1) % 3]);
+    if (orientation_3(mesh, foot, top, a, b) !=
+        orientation_3(mesh, foot, top, mesh.corner(t, solid::kFaceCorners[i][0]),
+                      mesh.corner(t, solid::kFaceCorners[i][1]))) {
       return false;
     }
   }
-  const std::array<TetCopy, 2> removed{TetCopy{t, 0}, g};
+  const std::array<solid::TetCopy, 2> removed{solid::TetCopy{t, 0}, g};
   return mesh.replace(removed, added);
 }
 
 // Replaces three tetrahedra round an edge by two.
-bool flip_32(QuotientTetrahedralization& mesh, TetId t, std::uint32_t e) {
-  const Corner a = mesh.corner(t, kEdgeCorners[e][0]), b = mesh.corner(t, kEdgeCorners[e][1]);
-  if (mesh.edges().find(mesh.edge_key(a, b)) != kNoSegment) return false;
-  if (mesh.on_axis(a.v) && mesh.on_axis(b.v)) return false;
-  std::vector<TetCopy> ring;
+bool flip_32(solid::QuotientTetrahedralization& mesh, solid::TetId t, std::uint32_t e) {
+  const OrbitVertex a = mesh.corner(t, solid::kEdgeCorners[e][0]),
+                    b = mesh.corner(t, solid::kEdgeCorners[e][1]);
+  if (mesh.edges().find(mesh.edge_key(a, b)) != solid::kNoSegment) return false;
+  if (mesh.on_axis(a.orbit) && mesh.on_axis(b.orbit)) return false;
+  std::vector<solid::TetCopy> ring;
   if (!mesh.ring({t, 0}, a, b, ring) || ring.size() != 3) return false;
-  std::vector<Corner> rim = others(mesh, ring[0], a, b);
-  for (const Corner& x : others(mesh, ring[1], a, b)) {
+  std::vector<OrbitVertex> rim = others(mesh, ring[0], a, b);
+  for (const OrbitVertex& x : others(mesh, ring[1], a, b)) {
     if (!(x == rim[0]) && !(x == rim[1])) rim.push_back(x);
   }
   if (rim.size() != 3) return false;
-  for (const TetCopy& c : ring) {
+  for (const solid::TetCopy& c : ring) {
     for (std::uint32_t i = 0; i < 4; ++i) {
-      if (mesh.tet(c.t).facet[i] == kNoFacet) continue;
-      const Corner x = mesh.corner(c, i);
+      if (mesh.tet(c.t).facet[i] == solid::kNoFacet) continue;
+      const OrbitVertex x = mesh.corner(c, i);
       if (!(x == a) && !(x == b)) return false;  // a facet at the edge
     }
   }
-  std::array<NewTet, 2> added;
+  std::array<solid::NewTet, 2> added;
   for (std::size_t m = 0; m < 2; ++m) {
-    NewTet& n = added[m];
+    solid::NewTet& n = added[m];
     n.c[0] = rim[0];
     n.c[1] = rim[1];
     n.c[2] = rim[2];
@@ -293,7 +303,7 @@ bool flip_32(QuotientTetrahedralization& mesh, TetId t, std::uint32_t e) {
 
 }  // namespace
 
-InitialTetrahedralization prism(const PrismShape& shape) {
+solid::InitialTetrahedralization prism(const PrismShape& shape) {
   return PrismBuilder(shape).build();
 }
 
@@ -358,35 +368,35 @@ double prism_volume(const PrismShape& s) {
   return area * s.height;
 }
 
-void shuffle_gauge(QuotientTetrahedralization& mesh, std::uint64_t seed) {
+void shuffle_gauge(solid::QuotientTetrahedralization& mesh, std::uint64_t seed) {
   Random random(seed);
   std::vector<std::int32_t> turn(mesh.tet_slots());
   for (std::int32_t& x : turn) {
     x = mesh.rotations().reduce(static_cast<std::int64_t>(random.next() >> 33));
   }
-  for (TetId t = 0; t < mesh.tet_slots(); ++t) {
+  for (solid::TetId t = 0; t < mesh.tet_slots(); ++t) {
     if (!mesh.alive(t)) continue;
-    Tet& tet = mesh.tet(t);
+    solid::Tet& tet = mesh.tet(t);
     for (std::uint32_t i = 0; i < 4; ++i) {
       tet.k[i] = static_cast<std::int16_t>(mesh.shift(tet.v[i], tet.k[i], turn[t]));
-      if (tet.nb[i] == kNoHalfFace) continue;
+      if (tet.nb[i] == solid::kNoHalfFace) continue;
       tet.off[i] = static_cast<std::int16_t>(
-          mesh.subtract(mesh.add(tet.off[i], turn[t]), turn[tet_of(tet.nb[i])]));
+          mesh.subtract(mesh.add(tet.off[i], turn[t]), turn[solid::tet_of(tet.nb[i])]));
     }
   }
 }
 
-void jitter(QuotientTetrahedralization& mesh, double share, std::uint64_t seed) {
+void jitter(solid::QuotientTetrahedralization& mesh, double share, std::uint64_t seed) {
   Random random(seed);
-  std::vector<TetCopy> star;
+  std::vector<solid::TetCopy> star;
   for (std::size_t i = 0; i < mesh.vertex_slots(); ++i) {
     const auto v = static_cast<VertexId>(i);
-    if (mesh.kind(v) != SolidVertexKind::kFree || mesh.on_axis(v)) continue;
+    if (mesh.kind(v) != solid::VertexKind::kFree || mesh.on_axis(v)) continue;
     star.clear();
     mesh.star(v, star);
     const Point3 p = mesh.point(v);
     double shortest = 1e300;
-    for (const TetCopy& c : star) {
+    for (const solid::TetCopy& c : star) {
       for (std::uint32_t m = 0; m < 4; ++m) {
         const double d = squared_distance(p, mesh.lift(mesh.corner(c, m)));
         if (d > 0) shortest = std::min(shortest, d);
@@ -396,7 +406,7 @@ void jitter(QuotientTetrahedralization& mesh, double share, std::uint64_t seed) 
     mesh.move_vertex(
         v, {p.x + step * (2 * random.uniform() - 1), p.y + step * (2 * random.uniform() - 1),
             p.z + step * (2 * random.uniform() - 1)});
-    const bool good = std::all_of(star.begin(), star.end(), [&](const TetCopy& c) {
+    const bool good = std::all_of(star.begin(), star.end(), [&](const solid::TetCopy& c) {
       return orientation_3(mesh, mesh.corner(c.t, 0), mesh.corner(c.t, 1), mesh.corner(c.t, 2),
                            mesh.corner(c.t, 3)) == Sign::kPositive;
     });
@@ -404,11 +414,11 @@ void jitter(QuotientTetrahedralization& mesh, double share, std::uint64_t seed) 
   }
 }
 
-int random_flips(QuotientTetrahedralization& mesh, int tries, std::uint64_t seed) {
+int random_flips(solid::QuotientTetrahedralization& mesh, int tries, std::uint64_t seed) {
   Random random(seed);
   int done = 0;
   for (int i = 0; i < tries; ++i) {
-    const auto t = static_cast<TetId>(random.next() % mesh.tet_slots());
+    const auto t = static_cast<solid::TetId>(random.next() % mesh.tet_slots());
     const auto place = static_cast<std::uint32_t>(random.next() % 10);
     if (!mesh.alive(t)) continue;
     done += (place < 4 ? flip_23(mesh, t, place) : flip_32(mesh, t, place - 4)) ? 1 : 0;

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "core/initial/initial_tetrahedralization.hpp"
 #include "core/model/plc.hpp"
+#include "core/solid/initial/initial_tetrahedralization.hpp"
 
 namespace symcell::test {
 
@@ -25,18 +25,18 @@ struct PrismShape {
 // A prism over a regular polygon, or a ring between two. Vertex kinds, facets (0: bottom, 1: top,
 // then one an outer and an inner side face, at last the plate), segments and subdomains are as the
 // initial tetrahedralization gives them; facet f has marker f + 1.
-[[nodiscard]] InitialTetrahedralization prism(const PrismShape& shape);
+[[nodiscard]] solid::InitialTetrahedralization prism(const PrismShape& shape);
 [[nodiscard]] Plc prism_model(const PrismShape& shape);
 [[nodiscard]] double prism_volume(const PrismShape& shape);  // of the full model
 
 // Stores every tetrahedron in a frame drawn at random: the same quotient mesh.
-void shuffle_gauge(QuotientTetrahedralization& mesh, std::uint64_t seed);
+void shuffle_gauge(solid::QuotientTetrahedralization& mesh, std::uint64_t seed);
 
 // Moves free vertices at random by up to `share` of their shortest edge, where that leaves all
 // tetrahedra positively oriented.
-void jitter(QuotientTetrahedralization& mesh, double share, std::uint64_t seed);
+void jitter(solid::QuotientTetrahedralization& mesh, double share, std::uint64_t seed);
 
 // Random 2-3 and 3-2 flips of inner faces and edges that are no constraints; the number done.
-int random_flips(QuotientTetrahedralization& mesh, int tries, std::uint64_t seed);
+int random_flips(solid::QuotientTetrahedralization& mesh, int tries, std::uint64_t seed);
 
 }  // namespace symcell::test

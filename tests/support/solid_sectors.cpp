@@ -20,7 +20,7 @@ class PrismBuilder {
     theta_ = 2 * std::numbers::pi / spec.fold;
   }
 
-  SolidSector build() && {
+  solid::Sector build() && {
     for (std::size_t l = 0; l < spec_.levels.size(); ++l) add_level(l);
     for (std::size_t l = 0; l < spec_.levels.size(); ++l) add_disc(l);
     if (!spec_.discs_only) {
@@ -35,7 +35,7 @@ class PrismBuilder {
     for (std::int32_t f = 0; f < facets_; ++f) sector_.facet_markers.push_back(f + 1);
     for (std::int32_t s = 0; s < segments_; ++s) sector_.segment_markers.push_back(s + 1);
     if (spec_.inward) {
-      for (SectorFace& f : sector_.faces) std::swap(f.v[1], f.v[2]);
+      for (solid::SectorFace& f : sector_.faces) std::swap(f.v[1], f.v[2]);
     }
     return std::move(sector_);
   }
@@ -50,7 +50,7 @@ class PrismBuilder {
     return 0.5 * count * radius * radius * std::sin(2 * std::numbers::pi / count);
   }
 
-  std::int32_t add_orbit(Point3 p, SectorVertexKind kind, bool axis) {
+  std::int32_t add_orbit(Point3 p, solid::SectorVertexKind kind, bool axis) {
     sector_.orbit_points.push_back(p);
     sector_.kinds.push_back(kind);
     sector_.on_axis.push_back(axis ? 1 : 0);
@@ -67,12 +67,12 @@ class PrismBuilder {
     const double step = theta_ / spec_.corners;
     if (spec_.fold > 1) {
       const double on_side = radius * std::cos(step / 2);
-      chain.push_back(
-          add_orbit(polar(on_side, spec_.start_angle, z), SectorVertexKind::kOnSegment, false));
+      chain.push_back(add_orbit(polar(on_side, spec_.start_angle, z),
+                                solid::SectorVertexKind::kOnSegment, false));
     }
     for (std::int32_t c = 0; c < spec_.corners; ++c) {
       chain.push_back(add_orbit(polar(radius, spec_.start_angle + (c + 0.5) * step, z),
-                                SectorVertexKind::kFixed, false));
+                                solid::SectorVertexKind::kFixed, false));
     }
     if (spec_.fold > 1) {
       const std::int32_t orbit = sector_.vertices[at(chain.front())].orbit;
@@ -91,7 +91,7 @@ class PrismBuilder {
       inner_.push_back(add_chain(spec_.inner_radius, z));
     } else {
       // For fold 1 a vertex in the middle of the disc like any other.
-      axis_.push_back(add_orbit({0, 0, z}, SectorVertexKind::kOnFacet, spec_.fold > 1));
+      axis_.push_back(add_orbit({0, 0, z}, solid::SectorVertexKind::kOnFacet, spec_.fold > 1));
     }
   }
 
@@ -161,7 +161,7 @@ class PrismBuilder {
 
   const PrismSpec spec_;
   double theta_ = 0;
-  SolidSector sector_;
+  solid::Sector sector_;
   std::int32_t facets_ = 0;
   std::int32_t segments_ = 0;
   std::vector<Chain> outer_;  // per level
@@ -171,12 +171,12 @@ class PrismBuilder {
 
 }  // namespace
 
-SolidSector prism_sector(const PrismSpec& spec) {
+solid::Sector prism_sector(const PrismSpec& spec) {
   return PrismBuilder(spec).build();
 }
 
-SolidSector block_sector(std::int32_t fold, double radius, double size, double start_angle) {
-  SolidSector sector;
+solid::Sector block_sector(std::int32_t fold, double radius, double size, double start_angle) {
+  solid::Sector sector;
   sector.fold = fold;
   sector.start_angle = start_angle;
   const double middle = start_angle + std::numbers::pi / fold;
@@ -184,7 +184,7 @@ SolidSector block_sector(std::int32_t fold, double radius, double size, double s
   sector.orbit_points = {{x, y, 0}, {x + size, y, 0}, {x, y + size, 0}, {x, y, size}};
   for (std::int32_t i = 0; i < 4; ++i) {
     sector.on_axis.push_back(0);
-    sector.kinds.push_back(SectorVertexKind::kFixed);
+    sector.kinds.push_back(solid::SectorVertexKind::kFixed);
     sector.vertices.push_back({i, 0});
     sector.facet_markers.push_back(i + 1);
   }
@@ -200,7 +200,7 @@ SolidSector block_sector(std::int32_t fold, double radius, double size, double s
   return sector;
 }
 
-SolidSector joined(SolidSector first, const SolidSector& second, bool cavity) {
+solid::Sector joined(solid::Sector first, const solid::Sector& second, bool cavity) {
   const auto orbits = static_cast<std::int32_t>(first.orbit_points.size());
   const auto vertices = static_cast<std::int32_t>(first.vertices.size());
   const auto facets = static_cast<std::int32_t>(first.facet_markers.size());
@@ -216,11 +216,11 @@ SolidSector joined(SolidSector first, const SolidSector& second, bool cavity) {
   for (const OrbitVertex v : second.vertices) {
     first.vertices.push_back({v.orbit + orbits, v.exponent});
   }
-  for (const SectorFace& f : second.faces) {
+  for (const solid::SectorFace& f : second.faces) {
     first.faces.push_back(
         {{f.v[0] + vertices, f.v[1] + vertices, f.v[2] + vertices}, f.facet + facets});
   }
-  for (const SectorEdge& e : second.edges) {
+  for (const solid::SectorEdge& e : second.edges) {
     first.edges.push_back({e.a + vertices, e.b + vertices, e.segment + segments});
   }
   for (const auto& [a, b] : second.lower_cut)

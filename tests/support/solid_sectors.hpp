@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/symmetry/solid_sector.hpp"
+#include "core/solid/sector/sector.hpp"
 
 namespace symcell::test {
 
@@ -24,16 +24,18 @@ struct PrismSpec {
 
 // Facets: levels bottom up, then outer walls by layer and corner, then inner ones; facet f has
 // marker f + 1, segment s marker s + 1. expected_volume is that of all layers.
-[[nodiscard]] SolidSector prism_sector(const PrismSpec& spec);
+[[nodiscard]] solid::Sector prism_sector(const PrismSpec& spec);
 
 // A block that does not touch the cuts: a tetrahedron in the middle of each sector.
-[[nodiscard]] SolidSector block_sector(std::int32_t fold,
-                                       double radius,
-                                       double size,
-                                       double start_angle = 0);
+[[nodiscard]] solid::Sector block_sector(std::int32_t fold,
+                                         double radius,
+                                         double size,
+                                         double start_angle = 0);
 
 // Both in one; markers of facets and segments of the second follow those of the first. The volumes
 // add up, or subtract if the second is a cavity.
-[[nodiscard]] SolidSector joined(SolidSector first, const SolidSector& second, bool cavity = false);
+[[nodiscard]] solid::Sector joined(solid::Sector first,
+                                   const solid::Sector& second,
+                                   bool cavity = false);
 
 }  // namespace symcell::test

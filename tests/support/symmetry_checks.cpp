@@ -5,9 +5,9 @@
 #include <cmath>
 #include <set>
 
-#include "core/model/subdomains.hpp"
-#include "core/model/validate_pslg.hpp"
-#include "core/symmetry/lifted_check.hpp"
+#include "core/plane/input/subdomains.hpp"
+#include "core/plane/input/validate_pslg.hpp"
+#include "core/plane/symmetry/lifted_check.hpp"
 
 namespace symcell {
 namespace {
@@ -19,24 +19,24 @@ struct Measures {
 
 Measures measures_of(const Pslg& pslg) {
   ExecutionContext context;
-  const auto subdomains = make_subdomains(pslg, context);
+  const auto subdomains = plane::make_subdomains(pslg, context);
   EXPECT_TRUE(subdomains) << subdomains.error().message;
   Measures result;
   if (!subdomains) return result;
-  for (const Subdomain& face : subdomains->faces) {
+  for (const plane::Subdomain& face : subdomains->faces) {
     if (face.meshed) result.area += face.area;
   }
-  for (const PlanarPiece& piece : subdomains->map.pieces) {
+  for (const plane::PlanarPiece& piece : subdomains->map.pieces) {
     result.boundary += distance(pslg.vertices[static_cast<std::size_t>(piece.a)],
                                 pslg.vertices[static_cast<std::size_t>(piece.b)]);
   }
   return result;
 }
 
-void expect_well_formed(const SymmetricPslg& s) {
+void expect_well_formed(const plane::SymmetricPslg& s) {
   const auto orbits = static_cast<std::int32_t>(s.orbit_points.size());
   std::set<std::tuple<std::int32_t, std::int32_t, std::int32_t>> seen;
-  for (const SymmetricSegment& segment : s.segments) {
+  for (const plane::SymmetricSegment& segment : s.segments) {
     ASSERT_TRUE(segment.a.orbit >= 0 && segment.a.orbit < orbits);
     ASSERT_TRUE(segment.b.orbit >= 0 && segment.b.orbit < orbits);
     ASSERT_TRUE(segment.b.exponent >= 0 && segment.b.exponent < s.fold);
@@ -56,14 +56,14 @@ void expect_well_formed(const SymmetricPslg& s) {
 
 }  // namespace
 
-void expect_symmetric_invariants(const SymmetricPslg& symmetric, const Pslg& input) {
+void expect_symmetric_invariants(const plane::SymmetricPslg& symmetric, const Pslg& input) {
   expect_well_formed(symmetric);
   if (::testing::Test::HasFatalFailure()) return;
-  const Pslg lifted = lift_pslg(symmetric);
+  const Pslg lifted = plane::lift_pslg(symmetric);
   ExecutionContext context;
-  const auto valid = validate_pslg(lifted, context);
+  const auto valid = plane::validate_pslg(lifted, context);
   EXPECT_TRUE(valid) << valid.error().message;
-  const auto subdomains = make_subdomains(lifted, context);
+  const auto subdomains = plane::make_subdomains(lifted, context);
   ASSERT_TRUE(subdomains);
   EXPECT_EQ(subdomains->map.cuts, 0U);
   EXPECT_EQ(subdomains->map.pieces.size(), lifted.segments.size());

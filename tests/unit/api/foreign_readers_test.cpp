@@ -9,8 +9,8 @@
 
 #include "api/formats/pslg_json.hpp"
 #include "api/schema/statistics_json.hpp"
-#include "core/cells/quadratic.hpp"
-#include "core/stats/quality.hpp"
+#include "core/cell/measure_cell.hpp"
+#include "core/cell/quadratic.hpp"
 #include "tests/support/extruded_cells.hpp"
 #include "tests/support/sample_cells.hpp"
 #include "tests/support/test_files.hpp"

@@ -1,10 +1,10 @@
-#include "core/cells/quadratic.hpp"
+#include "core/cell/quadratic.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "core/cells/full_mesh.hpp"
+#include "core/cell/full_mesh.hpp"
 #include "tests/support/sample_cells.hpp"
 
 namespace symcell {

@@ -1,11 +1,11 @@
-#include "core/cells/verify_mesh.hpp"
+#include "core/verify/verify_mesh.hpp"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
 #include "api/formats/vtu_reader.hpp"
-#include "core/cells/quadratic.hpp"
+#include "core/cell/quadratic.hpp"
 #include "tests/support/sample_cells.hpp"
 #include "tests/support/written_mesh.hpp"
 

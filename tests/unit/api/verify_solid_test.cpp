@@ -4,10 +4,10 @@
 #include <functional>
 
 #include "api/formats/vtu_reader.hpp"
-#include "core/cells/boundary_faces.hpp"
-#include "core/cells/full_mesh.hpp"
-#include "core/cells/quadratic.hpp"
-#include "core/cells/verify_mesh.hpp"
+#include "core/cell/boundary_faces.hpp"
+#include "core/cell/full_mesh.hpp"
+#include "core/cell/quadratic.hpp"
+#include "core/verify/verify_mesh.hpp"
 #include "tests/support/extruded_cells.hpp"
 #include "tests/support/moved_elements.hpp"
 #include "tests/support/sample_cells.hpp"

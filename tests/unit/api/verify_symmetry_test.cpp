@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "api/formats/vtu_reader.hpp"
-#include "core/cells/quadratic.hpp"
-#include "core/cells/verify_mesh.hpp"
+#include "core/cell/quadratic.hpp"
+#include "core/verify/verify_mesh.hpp"
 #include "tests/support/extruded_cells.hpp"
 #include "tests/support/moved_elements.hpp"
 #include "tests/support/sample_cells.hpp"

@@ -5,7 +5,7 @@
 
 #include "api/formats/cell_archive.hpp"
 #include "server/base/files.hpp"
-#include "server/jobs/local_engine.hpp"
+#include "server/worker/local_engine.hpp"
 #include "tests/support/sample_cells.hpp"
 
 namespace symcell::server::test {

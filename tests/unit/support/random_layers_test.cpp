@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/model/validate_plc.hpp"
-#include "core/surface/indexed_surface.hpp"
-#include "core/surface/self_intersections.hpp"
-#include "core/symmetry/symmetrise_solid.hpp"
+#include "core/geometry/indexed_surface.hpp"
+#include "core/geometry/self_intersections.hpp"
+#include "core/solid/plc/validate_plc.hpp"
+#include "core/solid/sector/symmetrise.hpp"
 #include "tests/support/sector_grid.hpp"
 
 namespace symcell {
@@ -68,7 +68,7 @@ TEST(RandomLayers, ModelsAreValidAndAsTold) {
     const auto model = make_random_layers(seed, options);
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + model.description);
     ExecutionContext context;
-    const auto valid = validate_plc(model.plc, context);
+    const auto valid = solid::validate_plc(model.plc, context);
     if (!valid) {  // an edge ends beside another one by rounding
       EXPECT_EQ(valid.error().code, ErrorCode::kSelfIntersection) << valid.error().message;
       ++refused;
@@ -104,7 +104,7 @@ TEST(RandomLayers, ModelsAreSymmetric) {
     options.fold = model.fold;
     options.axis_origin = model.axis_origin;
     options.axis_direction = model.axis_direction;
-    const auto source = symmetrise_plc(model.plc, options, context);
+    const auto source = solid::symmetrise_plc(model.plc, options, context);
     if (!source) {
       ADD_FAILURE() << error_code_name(source.error().code) << ": " << source.error().message;
       continue;
@@ -138,7 +138,7 @@ TEST(RandomLayers, SurfacesAreClosedAndAsTold) {
     const auto model = test::make_random_layer_surface(seed, options);
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + model.description);
     const IndexedSurface s = welded(model.surface);
-    const auto uses = sorted_edge_uses(s.triangles);
+    const auto uses = solid::sorted_edge_uses(s.triangles);
     for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
       EXPECT_EQ(end - begin, 2u);
       EXPECT_NE(uses[begin].forward, uses[end - 1].forward);

@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "core/symmetry/symmetrise.hpp"
+#include "core/plane/symmetry/symmetrise.hpp"
 
 namespace symcell {
 namespace {
@@ -19,7 +19,7 @@ TEST(RandomPlanarCells, ModelsAreValidAndAsTold) {
     MeshOptions options;
     options.fold = model.fold;
     options.center = model.center;
-    const auto found = inspect_pslg(model.pslg, options, context);
+    const auto found = plane::inspect_pslg(model.pslg, options, context);
     if (!found) {
       ADD_FAILURE() << error_code_name(found.error().code) << ": " << found.error().message;
       continue;

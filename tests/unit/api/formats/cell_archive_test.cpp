@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/cells/quadratic.hpp"
+#include "core/cell/quadratic.hpp"
 #include "tests/support/sample_cells.hpp"
 
 namespace symcell {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "core/cells/full_mesh.hpp"
-#include "core/cells/quadratic.hpp"
+#include "core/cell/full_mesh.hpp"
+#include "core/cell/quadratic.hpp"
 #include "tests/support/sample_cells.hpp"
 #include "tests/support/written_mesh.hpp"
 

@@ -9,11 +9,11 @@
 #include "api/formats/cell_archive.hpp"
 #include "api/formats/stl.hpp"
 #include "api/formats/vtu_reader.hpp"
-#include "core/cells/boundary_faces.hpp"
-#include "core/cells/full_mesh.hpp"
-#include "core/cells/quadratic.hpp"
-#include "core/stats/quality.hpp"
-#include "core/surface/clean_surface.hpp"
+#include "core/cell/boundary_faces.hpp"
+#include "core/cell/full_mesh.hpp"
+#include "core/cell/measure_cell.hpp"
+#include "core/cell/quadratic.hpp"
+#include "core/solid/surface/clean_surface.hpp"
 #include "tests/support/extruded_cells.hpp"
 #include "tests/support/sample_cells.hpp"
 #include "tests/support/written_mesh.hpp"
@@ -219,7 +219,7 @@ TEST(Stl, IsClosedAndNeedsNoRepair) {
         const auto surface = read_stl(written(sample.cell, part, MeshFormat::kStl, {{}, ascii}));
         ASSERT_TRUE(surface) << surface.error().message;
         ExecutionContext context;
-        const auto clean = clean_surface(*surface, context);
+        const auto clean = solid::clean_surface(*surface, context);
         ASSERT_TRUE(clean) << clean.error().message;
         EXPECT_FALSE(clean->problem) << sample.name << ": " << clean->problem->message;
         EXPECT_TRUE(clean->repairs.empty()) << sample.name << ": " << clean->repairs.front();

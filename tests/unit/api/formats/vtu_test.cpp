@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "api/formats/vtu_reader.hpp"
-#include "core/cells/full_mesh.hpp"
-#include "core/cells/quadratic.hpp"
+#include "core/cell/full_mesh.hpp"
+#include "core/cell/quadratic.hpp"
 #include "tests/support/sample_cells.hpp"
 #include "tests/support/written_mesh.hpp"
 

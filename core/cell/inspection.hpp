@@ -1,0 +1,62 @@
+// What `symcell inspect` tells of a model, without meshing it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/geometry/point.hpp"
+
+namespace symcell {
+
+// One rung of the ladder of folds that detection looked at.
+struct FoldCandidate {
+  std::int32_t fold = 1;
+  double error_rel = 0;  // largest distance of a rotated vertex from the shape / diameter
+  bool accepted = false;
+};
+
+struct PslgInspection {
+  std::int32_t fold = 1;
+  Point2 center;
+  double symmetry_error_rel = 0;
+  double area = 0;  // of the meshed domain
+  double diameter = 0;
+  Point2 bbox_min;
+  Point2 bbox_max;
+  std::size_t vertices = 0;
+  std::size_t segments = 0;
+  std::size_t holes = 0;             // hole seeds
+  std::size_t regions = 0;           // region seeds
+  std::size_t components = 0;        // edge-connected pieces of the domain
+  double min_input_angle_deg = 0;    // smallest angle between segments at a vertex, in the domain
+  std::vector<FoldCandidate> folds;  // ascending
+};
+
+struct SolidInspection {
+  std::string kind;  // "plc" or "surface"
+  std::int32_t fold = 1;
+  Point3 axis_origin;
+  Point3 axis_direction{0, 0, 1};
+  double symmetry_error_rel = 0;
+  double volume = 0;        // of the meshed domain (PLC: 0 if it cannot be told without meshing)
+  double surface_area = 0;  // surfaces only
+  double diameter = 0;
+  Point3 bbox_min;
+  Point3 bbox_max;
+  bool watertight = true;
+  std::size_t vertices = 0;
+  std::size_t facets = 0;  // facets of a PLC, triangles of a surface, after cleaning
+  std::size_t shells = 0;  // surfaces: closed components
+  std::size_t holes = 0;
+  std::size_t regions = 0;
+  std::vector<std::string> repairs;
+  std::vector<FoldCandidate> folds;  // the ladder, ascending
+  // Not empty: why a mesh of this model would be refused (open, self-intersecting, ambiguous).
+  std::string problem;
+};
+
+using Inspection = std::variant<PslgInspection, SolidInspection>;
+
+}  // namespace symcell

@@ -1,0 +1,91 @@
+#include "core/plane/input/subdomains.hpp"
+
+#include <algorithm>
+
+#include "core/geometry/resolution.hpp"
+#include "core/plane/input/near_vertices.hpp"
+
+namespace symcell::plane {
+namespace {
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+Point2 middle_of(const std::vector<Point2>& vertices) {
+  if (vertices.empty()) return {};
+  Point2 low = vertices.front();
+  Point2 high = low;
+  for (const Point2 p : vertices) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  return {low.x + 0.5 * (high.x - low.x), low.y + 0.5 * (high.y - low.y)};
+}
+
+// Green's theorem over the half-edges, triangle by triangle with the reference point.
+void measure(const Pslg& pslg, Subdomains& subdomains) {
+  const PlanarMap& map = subdomains.map;
+  for (std::size_t p = 0; p < map.pieces.size(); ++p) {
+    const Point2 a = pslg.vertices[at(map.pieces[p].a)] - subdomains.reference;
+    const Point2 b = pslg.vertices[at(map.pieces[p].b)] - subdomains.reference;
+    const double area = 0.5 * cross(a, b);
+    const Point2 moment = (area / 3.0) * (a + b);
+    Subdomain& left = subdomains.faces[at(map.face[2 * p])];
+    Subdomain& right = subdomains.faces[at(map.face[2 * p + 1])];
+    left.area += area;
+    left.moment = left.moment + moment;
+    right.area -= area;
+    right.moment = right.moment - moment;
+  }
+  subdomains.faces[0].area = 0;
+  subdomains.faces[0].moment = {};
+}
+
+// Vertices that touch a segment but for rounding lie on it: on one side of it the segments that end
+// there cross it, on the other they leave a gap. The error, if one stays, is that of the input as
+// given.
+Result<PlanarMap> make_tolerant_map(const Pslg& pslg,
+                                    const std::vector<Point2>& seeds,
+                                    ExecutionContext& context) {
+  auto exact = make_planar_map(pslg.vertices, pslg.segments, seeds, context);
+  if (!exact && exact.error().code != ErrorCode::kSelfIntersection) return exact;
+  const auto cut = cut_at_near_vertices(pslg.vertices, pslg.segments, resolution_of(pslg.vertices));
+  const std::size_t cuts = cut ? cut->segments.size() - pslg.segments.size() : 0;
+  if (!cut || (exact && cuts <= exact->cuts)) return exact;
+  auto map = make_planar_map(pslg.vertices, cut->segments, seeds, context);
+  if (!map) return exact;
+  map->cuts += cuts;
+  for (PlanarPiece& piece : map->pieces) piece.segment = cut->source[at(piece.segment)];
+  return map;
+}
+
+}  // namespace
+
+Result<Subdomains> make_subdomains(const Pslg& pslg, ExecutionContext& context) {
+  std::vector<Point2> seeds = pslg.holes;
+  for (const PslgRegion& region : pslg.regions) seeds.push_back(region.point);
+  auto map = make_tolerant_map(pslg, seeds, context);
+  if (!map) return tl::unexpected(map.error());
+
+  Subdomains result;
+  result.map = std::move(*map);
+  result.reference = middle_of(pslg.vertices);
+  result.faces.resize(at(result.map.face_count));
+  for (std::size_t f = 1; f < result.faces.size(); ++f) result.faces[f].meshed = true;
+  for (std::size_t q = 0; q < seeds.size(); ++q) {
+    const std::int32_t face = result.map.query_face[q];
+    if (face <= 0) continue;
+    Subdomain& subdomain = result.faces[at(face)];
+    if (q < pslg.holes.size()) {
+      subdomain.hole = true;
+      subdomain.meshed = false;
+    } else if (subdomain.region < 0) {
+      subdomain.region = static_cast<std::int32_t>(q - pslg.holes.size());
+    }
+  }
+  measure(pslg, result);
+  return result;
+}
+
+}  // namespace symcell::plane

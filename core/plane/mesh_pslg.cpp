@@ -1,0 +1,251 @@
+#include "core/plane/mesh_pslg.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <utility>
+
+#include "core/cell/measure_cell.hpp"
+#include "core/cell/quadratic.hpp"
+#include "core/guard/check_cell.hpp"
+#include "core/plane/cut/build_cell_mesh.hpp"
+#include "core/plane/cut/cut_cell.hpp"
+#include "core/plane/delaunay/insert.hpp"
+#include "core/plane/initial/initial_triangulation.hpp"
+#include "core/plane/input/validate_pslg.hpp"
+#include "core/plane/quotient/segment_cover.hpp"
+#include "core/plane/quotient/validate.hpp"
+#include "core/plane/refine/coarsen.hpp"
+#include "core/plane/refine/criteria.hpp"
+#include "core/plane/refine/refiner.hpp"
+#include "core/plane/symmetry/symmetrise.hpp"
+
+namespace symcell::plane {
+namespace {
+
+// Near 40 degrees a run may cascade where another, with other sampled points, does not.
+constexpr int kAttempts = 6;
+constexpr int kSamples = 24;
+constexpr double kSamplingAngleDeg = 38;  // below, samples are taken from the second attempt on
+// Small cells are made several times, with other samples and for somewhat higher bounds (a coarse
+// model may come out smaller for them), and the one with the fewest triangles is kept: a few
+// milliseconds each, and greedy coarsening ends in different places.
+constexpr std::size_t kSmallCell = 500;
+constexpr double kFurtherStartsDeg[] = {0, 0, 0, 1, 2, 3};
+
+class Stopwatch {
+ public:
+  // Milliseconds since the last call.
+  double lap() {
+    const auto now = Clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
+    last_ = now;
+    return ms;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
+
+// A bound on the area asks for at least area / bound triangles: refuse at once what cannot fit.
+Result<void> check_area_budget(const InitialTriangulation& start,
+                               const Criteria& criteria,
+                               const ExecutionContext& context) {
+  double least = 0;
+  for (TriangleId t = 0; t < start.mesh.triangle_slots(); ++t) {
+    if (!start.mesh.alive(t)) continue;
+    const Triangle& tri = start.mesh.triangle(t);
+    const Point2 a = start.mesh.corner_point(tri, 0), b = start.mesh.corner_point(tri, 1),
+                 c = start.mesh.corner_point(tri, 2);
+    least += 0.5 * cross(b - a, c - a) / criteria.max_area(tri.face);
+  }
+  if (least <= static_cast<double>(context.max_elements())) return {};
+  return fail(ErrorCode::kElementLimit,
+              "the area bounds ask for at least " + std::to_string(least) +
+                  " triangles in the cell, max_elements is " +
+                  std::to_string(context.max_elements()) +
+                  "; raise max_area (or the regions' max_area) or max_elements");
+}
+
+// Counts the exempt by reason. What is bad and not exempt must not be handed out.
+Result<void> count_exempt(const QuotientTriangulation& mesh,
+                          const Criteria& criteria,
+                          Statistics& statistics) {
+  std::uint64_t count[5] = {};
+  for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    const Assessment a = criteria.assess(mesh, mesh.triangle(t));
+    if (a.verdict == Verdict::kGood) continue;
+    const Exemption why = a.too_large ? Exemption::kNone : criteria.exemption(mesh, t, a);
+    if (why == Exemption::kNone) {
+      return fail(ErrorCode::kInternal,
+                  "triangle " + std::to_string(t) + " of the finished mesh breaks a bound");
+    }
+    ++count[static_cast<std::size_t>(why)];
+  }
+  constexpr const char* kReasons[4] = {"", "small_input_angle", "across_small_input_angle",
+                                       "fold_angle_at_centre"};
+  for (std::size_t i = 1; i < 4; ++i) {
+    if (count[i] > 0) statistics.exempt.push_back({kReasons[i], count[i]});
+  }
+  return {};
+}
+
+struct WorkDone {
+  RefineCounters refined;
+  CoarsenCounters coarsened;
+  EditCounters edits;
+};
+
+// Refines until no triangle is bad, then coarsens.
+Result<WorkDone> refine_and_coarsen(QuotientTriangulation& mesh,
+                                    Criteria& criteria,
+                                    const Refiner::Settings& settings,
+                                    ExecutionContext& context) {
+  Editor editor(mesh);
+  Refiner refiner(editor, criteria, settings, context);
+  if (auto ok = refiner.run(); !ok) return tl::unexpected<Error>(ok.error());
+  mesh.compact();
+  Coarsener coarsener(editor, criteria, refiner.surgery(), context);
+  if (settings.relocate) {
+    if (auto ok = coarsener.run(); !ok) return tl::unexpected<Error>(ok.error());
+    mesh.compact();
+  }
+  return WorkDone{refiner.counters(), coarsener.counters(), editor.counters()};
+}
+
+bool has_bad_triangle(const QuotientTriangulation& mesh, const Criteria& criteria) {
+  for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {
+    if (mesh.alive(t) && criteria.is_bad(mesh, t)) return true;
+  }
+  return false;
+}
+
+// From the initial triangulation again, with other samples, where a run cascades; and a few times
+// more where the cell is small, keeping the best.
+Result<WorkDone> refine_from_starts(InitialTriangulation& start,
+                                    Criteria& criteria,
+                                    const MeshOptions& options,
+                                    Point2 center,
+                                    ExecutionContext& context) {
+  const auto attempt = [&](QuotientTriangulation& mesh, Criteria& own, int number) {
+    const bool sample =
+        !options.plain && (number > 0 || options.min_angle_deg >= kSamplingAngleDeg);
+    return refine_and_coarsen(mesh, own,
+                              {center, !options.plain, sample ? kSamples : 0,
+                               options.seed + static_cast<std::uint64_t>(number)},
+                              context);
+  };
+  const QuotientTriangulation initial = start.mesh;
+  const Criteria initial_criteria = criteria;
+  int number = 0;
+  auto best = attempt(start.mesh, criteria, number++);
+  while (!best) {
+    const bool cascaded = best.error().code == ErrorCode::kBoundUnreachable;
+    if (!cascaded || options.plain || number == kAttempts) return best;
+    start.mesh = initial;
+    criteria = initial_criteria;
+    best = attempt(start.mesh, criteria, number++);
+  }
+  if (options.plain || start.mesh.triangle_count() > kSmallCell) return best;
+  for (const double higher : kFurtherStartsDeg) {
+    MeshOptions tighter = options;
+    tighter.min_angle_deg = std::min(options.min_angle_deg + higher, kMaxMinAngleDeg);
+    QuotientTriangulation mesh = initial;
+    Criteria own(mesh, start.subdomains, tighter);
+    auto work = attempt(mesh, own, number++);
+    if (!work && work.error().code != ErrorCode::kBoundUnreachable) return work;
+    if (!work || mesh.triangle_count() >= start.mesh.triangle_count()) continue;
+    // What a higher bound excuses, the one asked for may not.
+    Criteria asked = initial_criteria;
+    asked.adopt_segment_ends(own);
+    if (has_bad_triangle(mesh, asked)) continue;
+    start.mesh = std::move(mesh);
+    criteria = std::move(asked);
+    best = std::move(work);
+  }
+  return best;
+}
+
+// Down to the Delaunay property, and that all of the domain is covered and nothing else.
+Result<void> check_mesh(const QuotientTriangulation& mesh, const SegmentCover& wanted) {
+  if (auto ok = validate(mesh, ValidationLevel::kDelaunay); !ok) return ok;
+  return compare_segment_covers(wanted, measure_segment_cover(mesh));
+}
+
+void record(const SymmetricPslg& symmetric, Statistics::Symmetry& out) {
+  out.fold = symmetric.fold;
+  out.axis_origin = {symmetric.center.x, symmetric.center.y, 0};
+  out.error_rel = symmetric.symmetry_error_rel;
+  out.detected = symmetric.fold_detected;
+}
+
+// Steiner points are the vertices behind the `input_orbits` of the symmetrised model, a centre that
+// was added included.
+void record(const WorkDone& work,
+            const QuotientTriangulation& mesh,
+            std::size_t input_orbits,
+            Statistics::Refinement& out) {
+  for (std::size_t v = input_orbits; v < mesh.vertex_slots(); ++v) {
+    out.steiner_points += mesh.corner_of(static_cast<VertexId>(v)) != kNoHalfEdge ? 1 : 0;
+  }
+  out.splits = work.refined.splits;
+  out.relocations = work.refined.relocations + work.coarsened.relocations;
+  out.removed = work.refined.removed + work.coarsened.removed + work.coarsened.merged;
+  out.flips = work.edits.flips;
+  out.crossings = work.edits.crossings;
+}
+
+}  // namespace
+
+Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
+                              const MeshOptions& options,
+                              ExecutionContext& context) {
+  MeshOutcome outcome;
+  Statistics& stats = outcome.statistics;
+  Stopwatch total, watch;
+  context.report(Phase::kSymmetry, 0.02);
+  if (auto ok = validate_pslg(pslg, context); !ok) return tl::unexpected<Error>(ok.error());
+  auto symmetric = symmetrise(pslg, options, context);
+  if (!symmetric) return tl::unexpected<Error>(symmetric.error());
+  record(*symmetric, stats.symmetry);
+  stats.timings_ms.symmetry = watch.lap();
+
+  context.report(Phase::kInitial, 0.08);
+  auto start = triangulate_initial(*symmetric, context);
+  if (!start) return tl::unexpected<Error>(start.error());
+  stats.timings_ms.initial = watch.lap();
+
+  const SegmentCover wanted = measure_segment_cover(start->mesh);
+  Criteria criteria(start->mesh, start->subdomains, options);
+  if (auto ok = check_area_budget(*start, criteria, context); !ok) {
+    return tl::unexpected<Error>(ok.error());
+  }
+  const auto work = refine_from_starts(*start, criteria, options, symmetric->center, context);
+  if (!work) return tl::unexpected<Error>(work.error());
+  record(*work, start->mesh, symmetric->orbit_points.size(), stats.refinement);
+  stats.timings_ms.refine = watch.lap();
+
+  context.report(Phase::kCell, 0.92, start->mesh.triangle_count(), 1);
+  if (auto ok = check_mesh(start->mesh, wanted); !ok) return tl::unexpected<Error>(ok.error());
+  stats.timings_ms.check = watch.lap();
+  if (auto ok = count_exempt(start->mesh, criteria, stats); !ok) {
+    return tl::unexpected<Error>(ok.error());
+  }
+  auto cut = cut_cell(start->mesh);
+  if (!cut) return tl::unexpected<Error>(cut.error());
+  outcome.mesh = build_cell_mesh(*start, *cut, *symmetric);
+  stats.timings_ms.cell = watch.lap();
+  if (auto ok = check_cell(outcome.mesh); !ok) return tl::unexpected<Error>(ok.error());
+  stats.timings_ms.check += watch.lap();
+  if (options.order == 2) outcome.mesh = elevate_to_quadratic(outcome.mesh);
+  measure_cell_2(outcome.mesh, stats);
+  stats.timings_ms.cell += watch.lap();
+  stats.timings_ms.total = total.lap();
+  stats.peak_memory_bytes = peak_memory_bytes();
+  context.report(Phase::kDone, 1, stats.cell.elements, 1);
+  return outcome;
+}
+
+}  // namespace symcell::plane

@@ -1,0 +1,73 @@
+// How well a model's shape fits each fold, and which folds are worth trying.
+//
+// The error of fold n is the largest distance between a sample point (vertex, middle of a segment)
+// turned by a multiple of 2 pi / n and the segments of the same kind. "The largest n under the
+// tolerance" would be wrong: a fine polygon passes every fold for a circle, and a 64-fold disc
+// passes 65. A fold is kept if its error is within the tolerance, and
+//   1. it is much smaller than that of an arbitrary angle, or vertices fall on vertices;
+//   2. no other fold, neither dividing the other, has less than a quarter of its error.
+#pragma once
+
+#include <vector>
+
+#include "core/base/execution_context.hpp"
+#include "core/geometry/segment_index.hpp"
+#include "core/plane/symmetry/prepared_pslg.hpp"
+#include "core/plane/symmetry/symmetrise.hpp"
+
+namespace symcell::plane {
+
+struct FoldFit {
+  std::int32_t fold = 1;
+  Point2 center;
+  double error = 0;               // input units
+  std::int32_t worst_point = -1;  // of the prepared PSLG
+  bool vertices_match = false;
+  bool kept = false;
+};
+
+class FoldDetector {
+ public:
+  // `tolerance`: input units.  `center`: nullptr to find the centre of each fold.
+  FoldDetector(const PreparedPslg& prepared,
+               const SegmentIndex& index,
+               double tolerance,
+               const Point2* center);
+
+  // The folds above 1 that pass a first test, ascending, judged by the rules above.
+  [[nodiscard]] Result<std::vector<FoldFit>> ladder(ExecutionContext& context) const;
+
+  // One fold, measured; the error may exceed the tolerance.
+  [[nodiscard]] FoldFit fit(std::int32_t fold) const;
+
+ private:
+  struct Sample {
+    Point2 point;
+    std::int32_t vertex = -1;  // point of the prepared PSLG (an end, for the middle of an edge)
+    std::int32_t edge = -1;    // the edge it is the middle of, -1: a vertex
+    bool isolated = false;
+    double spacing = 0;  // length of the shortest edge at the vertex
+  };
+
+  void collect_samples();
+  void keep_telling_samples();
+  [[nodiscard]] double miss(
+      const Sample& sample, Point2 image, double cosine, double sine, double reach) const;
+  [[nodiscard]] bool passes_quickly(std::int32_t fold) const;
+  [[nodiscard]] double arbitrary_angle_error() const;
+  [[nodiscard]] std::vector<std::int32_t> candidates(bool revolution) const;
+  [[nodiscard]] Point2 refine_center(std::int32_t fold, Point2 center) const;
+  void measure(FoldFit& fit) const;
+  void judge(std::vector<FoldFit>& fits, double arbitrary) const;
+
+  const PreparedPslg& prepared_;
+  const SegmentIndex& index_;
+  SegmentIndex isolated_;
+  double tolerance_;
+  bool center_given_;
+  Point2 center_;
+  std::vector<Sample> samples_;      // the most telling first
+  std::int64_t smallest_class_ = 0;  // vertices at the rarest radius
+};
+
+}  // namespace symcell::plane

@@ -1,0 +1,197 @@
+#include "core/plane/symmetry/symmetrise.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/segment_index.hpp"
+#include "core/model/describe.hpp"
+#include "core/model/limits.hpp"
+#include "core/plane/symmetry/fold_detection.hpp"
+#include "core/plane/symmetry/lifted_check.hpp"
+#include "core/plane/symmetry/orbit_closure.hpp"
+#include "core/plane/symmetry/prepared_pslg.hpp"
+#include "core/plane/symmetry/symmetriser.hpp"
+
+namespace symcell::plane {
+namespace {
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+Result<void> check_options(const MeshOptions& options) {
+  if (options.fold && (*options.fold < 1 || *options.fold > kMaxFold)) {
+    return fail(ErrorCode::kBadFold,
+                "fold " + std::to_string(*options.fold) + " is not between 1 and " +
+                    std::to_string(kMaxFold) + "; give the number of equal sectors, or auto",
+                {}, "/options/fold");
+  }
+  if (options.center && !(std::abs(options.center->x) <= kMaxCoordinate &&
+                          std::abs(options.center->y) <= kMaxCoordinate)) {
+    return fail(ErrorCode::kBadAxis,
+                "the centre " + describe_point(*options.center) +
+                    " is not finite or out of range; give finite coordinates, or leave it out",
+                {}, "/options/center");
+  }
+  return {};
+}
+
+std::vector<IndexedSegment> positions_of(const PreparedPslg& prepared) {
+  std::vector<IndexedSegment> result;
+  result.reserve(prepared.edges.size());
+  for (const PreparedEdge& edge : prepared.edges) {
+    result.push_back({prepared.points[at(edge.a)], prepared.points[at(edge.b)]});
+  }
+  return result;
+}
+
+// The centre of a mesh without symmetry only fixes the origin of its coordinates. Far from the
+// origin a coarse multiple of a power of two near the middle: then subtracting it is exact.
+Point2 plain_center(const PreparedPslg& prepared) {
+  const Point2 middle = prepared.box_low + 0.5 * (prepared.box_high - prepared.box_low);
+  const double step = std::exp2(std::ceil(std::log2(prepared.diameter)));
+  const auto coarse = [step](double x) {
+    return std::abs(x) < 4 * step ? 0.0 : step * std::round(x / step);
+  };
+  return {coarse(middle.x), coarse(middle.y)};
+}
+
+class Symmetriser {
+ public:
+  Symmetriser(const Pslg& pslg,
+              const MeshOptions& options,
+              const PreparedPslg& prepared,
+              ExecutionContext& context)
+      : pslg_(pslg),
+        options_(options),
+        context_(context),
+        prepared_(prepared),
+        index_(positions_of(prepared)),
+        tolerance_(options.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel) *
+                   prepared.diameter),
+        detector_(prepared, index_, tolerance_, options.center ? &*options.center : nullptr) {}
+
+  Result<SymmetricPslg> run(std::vector<FoldFit>* ladder) {
+    if (options_.fold == 1) return without_symmetry();
+    if (options_.fold) return declared(*options_.fold);
+    auto fits = detector_.ladder(context_);
+    if (!fits) return tl::unexpected(fits.error());
+    if (ladder != nullptr) *ladder = *fits;
+    for (auto fit = fits->rbegin(); fit != fits->rend(); ++fit) {
+      if (!fit->kept) continue;
+      auto result = close(fit->fold, fit->center);
+      if (result) {
+        result->fold_detected = true;
+        return result;
+      }
+      if (result.error().code != ErrorCode::kNotSymmetric) return result;
+      if (ladder != nullptr)
+        (*ladder)[static_cast<std::size_t>(fits->rend() - fit) - 1].kept = false;
+    }
+    auto result = without_symmetry();
+    if (result) result->fold_detected = true;
+    return result;
+  }
+
+ private:
+  Result<SymmetricPslg> without_symmetry() {
+    return close(1, options_.center ? *options_.center : plain_center(prepared_));
+  }
+
+  Result<SymmetricPslg> declared(std::int32_t fold) {
+    const FoldFit fit = detector_.fit(fold);
+    auto result = close(fold, fit.center);
+    if (result || result.error().code != ErrorCode::kNotSymmetric) return result;
+    const double limit = options_.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel);
+    std::string message = "the model is not " + std::to_string(fold) + "-fold symmetric about " +
+                          describe_point(fit.center) + " within the tolerance of " +
+                          describe_rounded(limit) + " of its diameter: ";
+    Error error = result.error();
+    // An infinite error means that only kinds differ; the closure names them.
+    if (fit.error > tolerance_ && std::isfinite(fit.error) && fit.worst_point >= 0) {
+      const std::int32_t vertex = prepared_.input_vertex[at(fit.worst_point)];
+      message += "error " + describe_rounded(fit.error / prepared_.diameter) +
+                 " of the diameter, worst at " + describe_vertex(pslg_.vertices, vertex);
+      error.elements = {vertex};
+      error.pointer = "/vertices/" + std::to_string(vertex);
+    } else {
+      message += error.message;
+    }
+    error.message = message + "; correct the model, the fold or the centre, or raise the tolerance";
+    return tl::unexpected(std::move(error));
+  }
+
+  // Links copies as tightly as succeeds: a wide link would merge vertices that only lie close.
+  Result<SymmetricPslg> close(std::int32_t fold, Point2 center) {
+    const double finest = std::min(prepared_.resolution(), 2 * tolerance_);
+    for (double link = finest;; link = std::min(1000 * link, 2 * tolerance_)) {
+      auto result = close_linked({fold, center, link, std::max(tolerance_, finest)});
+      if (result || result.error().code != ErrorCode::kNotSymmetric) return result;
+      if (fold == 1 || link >= 2 * tolerance_) return result;
+    }
+  }
+
+  Result<SymmetricPslg> close_linked(ClosureRequest request) {
+    auto closed = close_orbits(prepared_, index_, request, context_);
+    if (!closed) return tl::unexpected(closed.error());
+    const bool settled = length(closed->center_shift) <= 1e-3 * prepared_.resolution();
+    if (request.fold > 1 && !options_.center && !settled) {
+      ClosureRequest moved = request;
+      moved.center = request.center + closed->center_shift;
+      auto again = close_orbits(prepared_, index_, moved, context_);
+      if (again && again->pslg.symmetry_error_rel <= closed->pslg.symmetry_error_rel) {
+        closed = std::move(again);
+      }
+    }
+    SymmetricPslg& result = closed->pslg;
+    result.diameter = prepared_.diameter;
+    result.center_detected = !options_.center;
+    copy_seeds(result);
+    if (auto ok = check_and_seed(*closed, context_); !ok) return tl::unexpected(ok.error());
+    return std::move(result);
+  }
+
+  void copy_seeds(SymmetricPslg& result) const {
+    for (const Point2 hole : pslg_.holes) result.holes.push_back(hole - result.center);
+    for (PslgRegion region : pslg_.regions) {
+      region.point = region.point - result.center;
+      result.regions.push_back(region);
+    }
+  }
+
+  const Pslg& pslg_;
+  const MeshOptions& options_;
+  ExecutionContext& context_;
+  const PreparedPslg& prepared_;
+  SegmentIndex index_;
+  double tolerance_;
+  FoldDetector detector_;
+};
+
+}  // namespace
+
+Result<SymmetricPslg> symmetrise_subdomains(const Pslg& pslg,
+                                            const Subdomains& subdomains,
+                                            const MeshOptions& options,
+                                            std::vector<FoldFit>* ladder,
+                                            ExecutionContext& context) {
+  if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
+  const PreparedPslg prepared = prepare_pslg(pslg, subdomains, options.ignore_markers);
+  if (prepared.edges.empty()) {
+    return fail(ErrorCode::kDegenerateGeometry, "the segments enclose nothing to mesh");
+  }
+  context.report(Phase::kSymmetry, 0.04);
+  return Symmetriser(pslg, options, prepared, context).run(ladder);
+}
+
+Result<SymmetricPslg> symmetrise(const Pslg& pslg,
+                                 const MeshOptions& options,
+                                 ExecutionContext& context) {
+  if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
+  context.report(Phase::kSymmetry, 0.01);
+  const auto subdomains = make_subdomains(pslg, context);
+  if (!subdomains) return tl::unexpected(subdomains.error());
+  return symmetrise_subdomains(pslg, *subdomains, options, nullptr, context);
+}
+
+}  // namespace symcell::plane

@@ -1,0 +1,104 @@
+#include "core/solid/initial/starts.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace symcell::solid {
+namespace {
+
+// Sectors that are tried before a model is given up.
+constexpr std::int32_t kMaxSectors = 40;
+// Triangles that are worked on for the sake of a better cut, and sectors that are compared.
+constexpr std::size_t kCompareBudget = 150'000;
+constexpr std::size_t kMostCompared = 8;
+// After so many triangles a sector without narrow corners is good enough, and at once where two in
+// a row cost the same up to this factor.
+constexpr std::size_t kEnoughCompared = 7'000;
+constexpr double kAlike = 1.001;
+// What a sector costs more than the one before, for the same triangles.
+constexpr double kLaterCost = 0.05;
+// Sectors that promise a mesh larger by this factor than one that went well are left out.
+constexpr double kMostCostlier = 2.5;
+
+bool is_limit(ErrorCode code) {
+  return code == ErrorCode::kCancelled || code == ErrorCode::kTimeLimit ||
+         code == ErrorCode::kMemoryLimit || code == ErrorCode::kElementLimit;
+}
+
+// What a wrong seed or a wrong model causes is so for every sector.
+bool is_worth_another_sector(ErrorCode code) {
+  return code == ErrorCode::kTetrahedralizationFailed || code == ErrorCode::kInternal;
+}
+
+}  // namespace
+
+Starts::Starts(const SectorSource& source)
+    : source_(source), most_(std::min(source.candidates(), kMaxSectors)) {
+}
+
+// Whether a cut more is worth its time, before any is meshed.
+bool Starts::is_worth_comparing() const {
+  if (next_ == 0) return true;
+  if (next_ == source_.preferred() && !sectors_.empty()) return false;
+  const std::size_t one_more = effort_ / static_cast<std::size_t>(next_);
+  return next_ < most_ && sectors_.size() < kMostCompared && effort_ > 0 &&
+         effort_ + one_more <= kCompareBudget;
+}
+
+// Whether the last cut made no difference.
+bool Starts::cuts_are_alike() const {
+  if (sectors_.size() < 2) return false;
+  const double ratio = sectors_.back().meshing_cost / sectors_[sectors_.size() - 2].meshing_cost;
+  return 1 / kAlike < ratio && ratio < kAlike;
+}
+
+Result<void> Starts::cut_one_more(ExecutionContext& context) {
+  auto sector = source_.sector(next_++, context);
+  effort_ += sector ? std::max(source_.effort(), sector->triangles_made) : source_.effort();
+  if (sector) {
+    sectors_.push_back(std::move(*sector));
+    return {};
+  }
+  last_ = sector.error();
+  return is_limit(last_.code) ? tl::unexpected<Error>(last_) : Result<void>{};
+}
+
+Result<InitialTetrahedralization> Starts::next(ExecutionContext& context) {
+  if (next_ == 0) {
+    while (is_worth_comparing()) {
+      if (auto ok = cut_one_more(context); !ok) return tl::unexpected<Error>(ok.error());
+      const bool good = !sectors_.empty() && sectors_.back().narrow_corners == 0;
+      if (good && (effort_ >= kEnoughCompared || cuts_are_alike())) break;
+    }
+    // Among much the same the earlier is the better one: it was cut where there is more room.
+    for (std::size_t i = 0; i < sectors_.size(); ++i) {
+      sectors_[i].meshing_cost *= 1 + kLaterCost * static_cast<double>(i);
+    }
+    std::stable_sort(sectors_.begin(), sectors_.end(), [](const Sector& a, const Sector& b) {
+      return a.meshing_cost > b.meshing_cost;
+    });
+  }
+  while (has_next()) {
+    if (sectors_.empty()) {
+      if (auto ok = cut_one_more(context); !ok) return tl::unexpected<Error>(ok.error());
+      continue;
+    }
+    const Sector sector = std::move(sectors_.back());
+    sectors_.pop_back();
+    if (sector.meshing_cost > kMostCostlier * cost_) continue;
+    auto solid = tetrahedralize_sector(sector, context);
+    if (solid) {
+      cost_ = std::min(cost_, sector.meshing_cost);
+      return solid;
+    }
+    last_ = solid.error();
+    if (!is_worth_another_sector(last_.code)) return solid;
+  }
+  return fail(ErrorCode::kTetrahedralizationFailed,
+              "none of " + std::to_string(most_) +
+                  " sectors of the model could be tetrahedralized; the last one: " + last_.message +
+                  "; look for nearly touching or needle-like facets, or give another fold");
+}
+
+}  // namespace symcell::solid

@@ -1,0 +1,45 @@
+// Initial tetrahedralizations of a solid, of one sector after the other.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/execution_context.hpp"
+#include "core/solid/initial/initial_tetrahedralization.hpp"
+#include "core/solid/sector/sector_source.hpp"
+
+namespace symcell::solid {
+
+class Starts {
+ public:
+  // `source` must outlive the object.
+  explicit Starts(const SectorSource& source);
+
+  // Whether sectors are left that were not tried.
+  [[nodiscard]] bool has_next() const { return !sectors_.empty() || next_ < most_; }
+
+  // Of the next sector that can be tetrahedralized; at first of those worth comparing the one that
+  // promises the smallest mesh.
+  // Errors: kTetrahedralizationFailed (of all that were left), model codes, limits.
+  [[nodiscard]] Result<InitialTetrahedralization> next(ExecutionContext& context);
+
+  // Triangles that were worked on so far.
+  [[nodiscard]] std::size_t effort() const { return effort_; }
+
+ private:
+  [[nodiscard]] bool is_worth_comparing() const;
+  [[nodiscard]] bool cuts_are_alike() const;
+  [[nodiscard]] Result<void> cut_one_more(ExecutionContext& context);
+
+  const SectorSource& source_;
+  std::int32_t most_;
+  std::int32_t next_ = 0;  // candidate of the source
+  std::size_t effort_ = 0;
+  std::vector<Sector> sectors_;  // cut already; the most promising is the last
+  double cost_ = std::numeric_limits<double>::infinity();  // least of those that went well
+  Error last_;
+};
+
+}  // namespace symcell::solid

@@ -1,0 +1,83 @@
+// `check_cells`: what hole and region seeds must hold.
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/model/describe.hpp"
+#include "core/solid/plc/plc_cells.hpp"
+
+namespace symcell::solid {
+namespace {
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+std::string seed_name(const char* kind, std::size_t i, Point3 p) {
+  return std::string(kind) + " seed " + std::to_string(i) + " at " + describe_point(p);
+}
+
+Result<void> check_enclosure(const PlcComplex& complex, const PlcCells& cells) {
+  if (cells.cells.size() > 1) return {};
+  std::string message = "the facets enclose no volume";
+  std::vector<std::int64_t> elements;
+  constexpr std::size_t kNamed = 3;
+  for (std::size_t i = 0; i < std::min(kNamed, cells.open_edges.size()); ++i) {
+    const ComplexEdge& e = complex.edges[at(cells.open_edges[i])];
+    message += std::string(i == 0 ? ": open at the segment" : ", at that") + " from vertex " +
+               std::to_string(e.a) + " at " + describe_point(complex.points[at(e.a)]) +
+               " to vertex " + std::to_string(e.b) + " at " +
+               describe_point(complex.points[at(e.b)]);
+    elements.insert(elements.end(), {e.a, e.b});
+  }
+  if (cells.open_edges.size() > kNamed) {
+    message += " and " + std::to_string(cells.open_edges.size() - kNamed) + " more";
+  }
+  return fail(ErrorCode::kNotWatertight, message + "; add the facets that close the surface",
+              std::move(elements));
+}
+
+}  // namespace
+
+Result<void> check_cells(const PlcComplex& complex, const PlcCells& cells) {
+  if (auto ok = check_enclosure(complex, cells); !ok) return ok;
+  const auto unreachable = [](const std::string& seed, std::size_t i, const char* list) {
+    return fail(ErrorCode::kUnreachableSeed,
+                seed +
+                    " is not enclosed by facets; move it into a cell, close the facets round "
+                    "it, or remove it",
+                {static_cast<std::int64_t>(i)}, "/" + std::string(list) + "/" + std::to_string(i));
+  };
+  for (std::size_t i = 0; i < cells.hole_cell.size(); ++i) {
+    if (cells.hole_cell[i] == kOutside) {
+      return unreachable(seed_name("hole", i, complex.holes[i]), i, "holes");
+    }
+  }
+  for (std::size_t i = 0; i < cells.region_cell.size(); ++i) {
+    const PlcRegion& region = complex.regions[i];
+    const std::string name = seed_name("region", i, region.point);
+    if (cells.region_cell[i] == kOutside) return unreachable(name, i, "regions");
+    const PlcCell& cell = cells.cells[at(cells.region_cell[i])];
+    const PlcRegion& first = complex.regions[at(cell.region)];
+    std::string other;
+    if (cell.hole >= 0) {
+      other = seed_name("hole", at(cell.hole), complex.holes[at(cell.hole)]);
+    } else if (first.attribute != region.attribute || first.max_volume != region.max_volume) {
+      other = seed_name("region", at(cell.region), first.point);
+    }
+    if (other.empty()) continue;
+    return fail(ErrorCode::kConflictingSeeds,
+                other + " and " + name +
+                    " lie in the same cell, with no facet between; keep one of them or close the "
+                    "facets between them",
+                {static_cast<std::int64_t>(i)}, "/regions/" + std::to_string(i));
+  }
+  const bool meshed = std::any_of(cells.cells.begin(), cells.cells.end(),
+                                  [](const PlcCell& c) { return c.meshed; });
+  if (meshed) return {};
+  return fail(ErrorCode::kDegenerateGeometry,
+              "every cell has a hole seed, so nothing is left to mesh; remove a hole seed");
+}
+
+}  // namespace symcell::solid

@@ -1,0 +1,353 @@
+#include "core/solid/quotient/validate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "core/solid/quotient/lifted_predicates.hpp"
+
+namespace symcell::solid {
+namespace {
+
+// Angles round an edge add up to a multiple of the full turn by the layers below, up to rounding;
+// only the multiple is asked for.
+constexpr double kAngleSlack = 0.01;
+// Facets are planar up to the rounding of their vertices, so volumes agree up to that only.
+constexpr double kVolumeSlack = 1e-7;
+// As in validate.cpp: a tie left alone may look certain with other roundings.
+constexpr double kTieSlack = 4;
+
+class Checker {
+ public:
+  explicit Checker(const QuotientTetrahedralization& mesh) : mesh_(mesh) {}
+
+  Result<TetrahedraReport> run(ValidationLevel level, double expected_volume) {
+    if (auto ok = each_tet([&](TetId t) { return elements(t); }); !ok) return forward(ok);
+    if (level == ValidationLevel::kElements) return report_;
+    if (auto ok = each_tet([&](TetId t) { return incidence(t); }); !ok) return forward(ok);
+    if (auto ok = subsegments(); !ok) return forward(ok);
+    if (auto ok = vertices(); !ok) return forward(ok);
+    if (level == ValidationLevel::kIncidence) return report_;
+    if (auto ok = angles(); !ok) return forward(ok);
+    if (auto ok = volume(expected_volume); !ok) return forward(ok);
+    if (level == ValidationLevel::kEmbedding) return report_;
+    delaunay();
+    return report_;
+  }
+
+ private:
+  static tl::unexpected<Error> forward(const Result<void>& r) {
+    return tl::unexpected<Error>(r.error());
+  }
+
+  static Result<void> broken(const char* layer, TetId t, std::size_t i, const char* what) {
+    return fail(ErrorCode::kInternal,
+                std::string("mesh check '") + layer + "': tetrahedron " + std::to_string(t) +
+                    ", corner, face or edge " + std::to_string(i) + ": " + what,
+                {static_cast<std::int64_t>(t)});
+  }
+  static Result<void> broken_vertex(VertexId v, const char* what) {
+    return fail(ErrorCode::kInternal,
+                "mesh check 'incidence': vertex " + std::to_string(v) + ": " + what,
+                {static_cast<std::int64_t>(v)});
+  }
+
+  template <class Check>
+  Result<void> each_tet(const Check& check) {
+    for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
+      if (!mesh_.alive(t)) continue;
+      if (auto ok = check(t); !ok) return ok;
+    }
+    return {};
+  }
+
+  Result<void> elements(TetId t) {
+    const Tet& tet = mesh_.tet(t);
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const VertexId v = tet.v[i];
+      if (v < 0 || static_cast<std::size_t>(v) >= mesh_.vertex_slots() ||
+          mesh_.kind(v) == VertexKind::kDeleted) {
+        return broken("elements", t, i, "corner is no vertex");
+      }
+      if (tet.k[i] < 0 || tet.k[i] >= mesh_.fold() || tet.off[i] < 0 ||
+          tet.off[i] >= mesh_.fold()) {
+        return broken("elements", t, i, "exponent out of range");
+      }
+      if (mesh_.on_axis(v)) {
+        const Point3 p = mesh_.point(v);
+        if (p.x != 0 || p.y != 0) return broken("elements", t, i, "axis vertex off the axis");
+        if (tet.k[i] != 0) return broken("elements", t, i, "axis vertex with an exponent");
+      }
+      for (std::uint32_t j = 0; j < i; ++j) {
+        if (v == tet.v[j] && tet.k[i] == tet.k[j]) {
+          return broken("elements", t, i, "corners repeat");
+        }
+      }
+    }
+    if (orientation_3(mesh_, mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2),
+                      mesh_.corner(t, 3)) != Sign::kPositive) {
+      return broken("elements", t, 0, "not (certainly) positively oriented");
+    }
+    return {};
+  }
+
+  Result<void> incidence(TetId t) {
+    const Tet& tet = mesh_.tet(t);
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const HalfFace g = tet.nb[i];
+      if (g == kNoHalfFace) {
+        if (tet.facet[i] == kNoFacet) return broken("incidence", t, i, "open face, no facet");
+        continue;
+      }
+      if (tet_of(g) >= mesh_.tet_slots() || !mesh_.alive(tet_of(g))) {
+        return broken("incidence", t, i, "neighbour is not alive");
+      }
+      const Tet& other = mesh_.tet(tet_of(g));
+      const std::uint32_t j = face_of(g);
+      if (other.nb[j] != 4 * t + i) return broken("incidence", t, i, "neighbour not mutual");
+      if (mesh_.add(tet.off[i], other.off[j]) != 0) return broken("incidence", t, i, "exponents");
+      if (tet.facet[i] != other.facet[j]) return broken("incidence", t, i, "facets differ");
+      if (tet.facet[i] == kNoFacet && tet.region != other.region) {
+        return broken("incidence", t, i, "regions differ without a facet between");
+      }
+      if (!faces_agree(t, i, g)) return broken("incidence", t, i, "corners differ across the face");
+    }
+    return {};
+  }
+
+  // The three corners are the same, turning the other way seen from the other side.
+  [[nodiscard]] bool faces_agree(TetId t, std::uint32_t i, HalfFace g) const {
+    const Tet& tet = mesh_.tet(t);
+    const std::int32_t off = tet.off[i];
+    for (std::uint32_t turn = 0; turn < 3; ++turn) {
+      bool same = true;
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        const OrbitVertex mine = mesh_.corner(t, kFaceCorners[i][c]);
+        const OrbitVertex theirs =
+            mesh_.shift(mesh_.corner(tet_of(g), kFaceCorners[face_of(g)][(turn + 3 - c) % 3]), off);
+        same = same && mine == theirs;
+      }
+      if (same) return true;
+    }
+    return false;
+  }
+
+  Result<void> subsegments() {
+    EdgeMap found;
+    for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
+      if (!mesh_.alive(t)) continue;
+      for (const auto& e : kEdgeCorners) {
+        const OrbitVertex a = mesh_.corner(t, e[0]), b = mesh_.corner(t, e[1]);
+        const std::int32_t segment = mesh_.segment_of(a, b);
+        if (segment != kNoSegment) found.set(mesh_.edge_key(a, b), segment);
+      }
+    }
+    if (found.size() != mesh_.edges().size()) {
+      return fail(ErrorCode::kInternal,
+                  "mesh check 'incidence': " + std::to_string(mesh_.edges().size() - found.size()) +
+                      " of " + std::to_string(mesh_.edges().size()) +
+                      " subsegments are no edges of the mesh, or end at a vertex of no segment");
+    }
+    return {};
+  }
+
+  Result<void> vertices() {
+    struct Seen {
+      std::uint32_t segment_ends = 0;
+      std::uint32_t facets = 0;
+      bool other_facet = false;  // a facet that is not the vertex's parent
+    };
+    std::vector<Seen> seen(mesh_.vertex_slots());
+    std::vector<std::uint8_t> used(mesh_.vertex_slots(), 0);
+    mesh_.edges().for_each([&](const EdgeKey& key, std::int32_t) {
+      ++seen[static_cast<std::size_t>(key.a)].segment_ends;
+      ++seen[static_cast<std::size_t>(key.b)].segment_ends;
+    });
+    for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
+      if (!mesh_.alive(t)) continue;
+      const Tet& tet = mesh_.tet(t);
+      for (std::uint32_t i = 0; i < 4; ++i) {
+        used[static_cast<std::size_t>(tet.v[i])] = 1;
+        if (tet.facet[i] == kNoFacet) continue;
+        for (const std::uint32_t c : kFaceCorners[i]) {
+          Seen& s = seen[static_cast<std::size_t>(tet.v[c])];
+          ++s.facets;
+          s.other_facet = s.other_facet || tet.facet[i] != mesh_.parent(tet.v[c]);
+        }
+      }
+    }
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const auto v = static_cast<VertexId>(i);
+      if (used[i] == 0) continue;
+      const TetId at = mesh_.tet_at(v);
+      if (at >= mesh_.tet_slots() || !mesh_.alive(at) ||
+          std::find(mesh_.tet(at).orbit, mesh_.tet(at).v + 4, v) == mesh_.tet(at).v + 4) {
+        return broken_vertex(v, "its tetrahedron does not have it as a corner");
+      }
+      const VertexKind kind = mesh_.kind(v);
+      if (kind == VertexKind::kFree && (seen[i].facets != 0 || seen[i].segment_ends != 0)) {
+        return broken_vertex(v, "free, but on a facet or segment");
+      }
+      if (kind == VertexKind::kFacet && (seen[i].facets == 0 || seen[i].other_facet)) {
+        return broken_vertex(v, "on no face of its facet, or on one of another facet");
+      }
+      // A segment that the axis cuts in two equal halves has one end orbit there.
+      if (kind == VertexKind::kSegment &&
+          seen[i].segment_ends < (mesh_.on_axis(v) && mesh_.fold() > 1 ? 1U : 2U)) {
+        return broken_vertex(v, "inside a segment, but not between two subsegments");
+      }
+    }
+    return {};
+  }
+
+  // Interior angle of the tetrahedron at edge ij.
+  [[nodiscard]] double dihedral(TetId t, std::uint32_t i, std::uint32_t j) const {
+    std::array<std::uint32_t, 2> o{};
+    std::size_t n = 0;
+    for (std::uint32_t m = 0; m < 4; ++m) {
+      if (m != i && m != j) o[n++] = m;
+    }
+    const Point3 a = mesh_.corner_point(t, i);
+    const Point3 axis = mesh_.corner_point(t, j) - a;
+    const Point3 p = cross(axis, mesh_.corner_point(t, o[0]) - a);
+    const Point3 q = cross(axis, mesh_.corner_point(t, o[1]) - a);
+    return std::atan2(length(cross(p, q)), dot(p, q));
+  }
+
+  Result<void> angles() {
+    std::vector<std::uint8_t> done(mesh_.tet_slots(), 0);  // a bit per edge
+    std::vector<TetCopy> ring;
+    return each_tet([&](TetId t) -> Result<void> {
+      for (std::uint32_t e = 0; e < 6; ++e) {
+        if ((done[t] >> e & 1) != 0) continue;
+        const OrbitVertex a = mesh_.corner(t, kEdgeCorners[e][0]);
+        const OrbitVertex b = mesh_.corner(t, kEdgeCorners[e][1]);
+        ring.clear();
+        const bool closed = mesh_.ring({t, 0}, a, b, ring);
+        for (const TetCopy& c : ring) {
+          done[c.t] = static_cast<std::uint8_t>(done[c.t] | 1U << local_edge(c, a, b));
+        }
+        const bool axis = mesh_.on_axis(a.orbit) && mesh_.on_axis(b.orbit);
+        const bool ok = closed && !axis ? turns_once(ring, a, b) : adds_up(ring, a, b, closed);
+        if (!ok) return broken("embedding", t, e, "dihedral angles do not make one turn");
+      }
+      return {};
+    });
+  }
+
+  // Each tetrahedron turns by less than half a turn, all the same way, so a closed ring passes from
+  // below to above a plane through the edge once a turn; signs of a vertex are the same in both of
+  // its tetrahedra, whatever their rounding.
+  [[nodiscard]] bool turns_once(const std::vector<TetCopy>& ring,
+                                OrbitVertex a,
+                                OrbitVertex b) const {
+    const Point3 from = mesh_.lift(a), along = mesh_.lift(b) - from;
+    Point3 up;
+    int passes = 0;
+    for (const TetCopy& c : ring) {
+      std::array<std::uint32_t, 2> o = opposite_ends(c, a, b);
+      const Point3 p = mesh_.lift(mesh_.corner(c, o[0])) - from;
+      const Point3 q = mesh_.lift(mesh_.corner(c, o[1])) - from;
+      if (up == Point3{}) up = cross(along, p + q);
+      passes += dot(up, p) < 0 && dot(up, q) >= 0 ? 1 : 0;
+    }
+    return passes == 1;
+  }
+
+  // The corners off edge ab, as they follow each other round it.
+  [[nodiscard]] std::array<std::uint32_t, 2> opposite_ends(TetCopy c,
+                                                           OrbitVertex a,
+                                                           OrbitVertex b) const {
+    std::array<std::uint32_t, 4> order{};  // a, b, the others
+    std::size_t others = 2;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const OrbitVertex x = mesh_.corner(c, i);
+      if (x == a) {
+        order[0] = i;
+      } else if (x == b) {
+        order[1] = i;
+      } else if (others < 4) {
+        order[others++] = i;
+      }
+    }
+    bool even = true;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) even = even == (order[i] < order[j]);
+    }
+    if (even) return {order[2], order[3]};
+    return {order[3], order[2]};
+  }
+
+  // An open ring stays below a turn, one about the axis makes the sector's angle.
+  [[nodiscard]] bool adds_up(const std::vector<TetCopy>& ring,
+                             OrbitVertex a,
+                             OrbitVertex b,
+                             bool closed) const {
+    double sum = 0;
+    for (const TetCopy& c : ring) {
+      const std::uint32_t e = local_edge(c, a, b);
+      sum += dihedral(c.t, kEdgeCorners[e][0], kEdgeCorners[e][1]);
+    }
+    const bool axis = mesh_.on_axis(a.orbit) && mesh_.on_axis(b.orbit);
+    const double turn = 2 * std::numbers::pi / (axis ? static_cast<double>(mesh_.fold()) : 1.0);
+    return closed ? std::abs(sum - turn) < kAngleSlack * turn : sum < (1 + kAngleSlack) * turn;
+  }
+
+  [[nodiscard]] std::uint32_t local_edge(TetCopy c, OrbitVertex a, OrbitVertex b) const {
+    for (std::uint32_t e = 0; e < 6; ++e) {
+      const OrbitVertex p = mesh_.corner(c, kEdgeCorners[e][0]),
+                        q = mesh_.corner(c, kEdgeCorners[e][1]);
+      if ((p == a && q == b) || (p == b && q == a)) return e;
+    }
+    return 0;  // the ring holds tetrahedra at the edge only
+  }
+
+  Result<void> volume(double expected) {
+    double size = 0;
+    for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
+      if (!mesh_.alive(t)) continue;
+      const Point3 d = mesh_.corner_point(t, 3);
+      const Point3 a = mesh_.corner_point(t, 0) - d, b = mesh_.corner_point(t, 1) - d;
+      size -= dot(cross(a, b), mesh_.corner_point(t, 2) - d) / 6;
+    }
+    report_.volume = size;
+    if (expected > 0 && std::abs(size - expected) > kVolumeSlack * expected) {
+      return fail(ErrorCode::kInternal, "mesh check 'embedding': volume " + std::to_string(size) +
+                                            " instead of " + std::to_string(expected));
+    }
+    return {};
+  }
+
+  void delaunay() {
+    for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
+      if (!mesh_.alive(t)) continue;
+      const Tet& tet = mesh_.tet(t);
+      for (std::uint32_t i = 0; i < 4; ++i) {
+        const HalfFace g = tet.nb[i];
+        if (g == kNoHalfFace || tet.facet[i] != kNoFacet || g < 4 * t + i) continue;
+        ++report_.free_faces;
+        const OrbitVertex apex = mesh_.shift(mesh_.corner(tet_of(g), face_of(g)), tet.off[i]);
+        if (in_sphere(mesh_, mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2),
+                      mesh_.corner(t, 3), apex, kTieSlack) == Sign::kPositive) {
+          ++report_.certain_flips;
+        }
+      }
+    }
+  }
+
+  const QuotientTetrahedralization& mesh_;
+  TetrahedraReport report_;
+};
+
+}  // namespace
+
+Result<TetrahedraReport> validate(const QuotientTetrahedralization& mesh,
+                                  ValidationLevel level,
+                                  double expected_volume) {
+  return Checker(mesh).run(level, expected_volume);
+}
+
+}  // namespace symcell::solid

@@ -1,0 +1,94 @@
+// What makes a tetrahedron bad, and which the input itself excuses.
+//
+// Bounds: radius-edge ratio, volume (global and of the region), longest edge. Exempt from the ratio
+// are tetrahedra with a corner on a sharp feature of the input (dihedral angle at a segment, or
+// face angle at a vertex, below kSharpDeg) or, where 360/n is below 60 degrees, on the axis: there
+// a triangle (axis point, v, R v) has a ratio of 1 / (2 sin(180/n)) whatever the size.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/tet_measures.hpp"
+#include "core/model/mesh_options.hpp"
+#include "core/solid/initial/initial_tetrahedralization.hpp"
+#include "core/solid/quotient/quotient_tetrahedralization.hpp"
+
+namespace symcell::solid {
+
+inline constexpr double kSharpDeg = 70;
+inline constexpr double kNarrowSectorDeg = 60;
+
+enum class Exemption : std::uint8_t { kNone, kSmallInputAngle, kAxis };
+
+class Criteria {
+ public:
+  Criteria(const InitialTetrahedralization& solid, const MeshOptions& options);
+
+  // 1 or less: keeps all bounds. Above: the largest factor by which a length or the ratio is over.
+  // Exempt tetrahedra need not keep the ratio.
+  [[nodiscard]] double excess(const TetMeasures& m, std::int32_t region, bool exempt) const {
+    const double sized = size_excess2(m, region);
+    const double ratio = exempt ? 0 : m.ratio2() * inverse_ratio2_;
+    return ratio > sized ? ratio : sized;
+  }
+  // Of the ratio alone.
+  [[nodiscard]] double ratio_excess(const TetMeasures& m) const {
+    return m.ratio2() * inverse_ratio2_;
+  }
+  // Squared, of volume and edge alone (volumes to the power 2/3).
+  [[nodiscard]] double size_excess2(const TetMeasures& m, std::int32_t region) const;
+  [[nodiscard]] bool is_bad(const TetMeasures& m, std::int32_t region, bool exempt) const {
+    return excess(m, region, exempt) > 1;
+  }
+  [[nodiscard]] double max_volume(std::int32_t region) const {
+    return max_volumes_[static_cast<std::size_t>(region)];
+  }
+  [[nodiscard]] double max_edge2() const { return max_edge2_; }
+
+  [[nodiscard]] Exemption exemption(const QuotientTetrahedralization& mesh, const Tet& t) const {
+    Exemption found = Exemption::kNone;
+    for (const VertexId v : t.v) {
+      const Exemption e = exemption(mesh, v);
+      if (e == Exemption::kSmallInputAngle) return e;
+      if (e != Exemption::kNone) found = e;
+    }
+    return found;
+  }
+  [[nodiscard]] Exemption exemption(const QuotientTetrahedralization& mesh, VertexId v) const {
+    const VertexKind kind = mesh.kind(v);
+    if (kind > VertexKind::kSegment) return Exemption::kNone;
+    if (kind == VertexKind::kInput && sharp_vertices_[static_cast<std::size_t>(v)] != 0) {
+      return Exemption::kSmallInputAngle;
+    }
+    if (kind == VertexKind::kSegment && sharp_segment(mesh.parent(v))) {
+      return Exemption::kSmallInputAngle;
+    }
+    return narrow_ && mesh.on_axis(v) ? Exemption::kAxis : Exemption::kNone;
+  }
+  [[nodiscard]] bool sharp_segment(std::int32_t segment) const {
+    return segment >= 0 && sharp_segments_[static_cast<std::size_t>(segment)] != 0;
+  }
+  [[nodiscard]] bool sharp_vertex(const QuotientTetrahedralization& mesh, VertexId v) const {
+    return exemption(mesh, v) == Exemption::kSmallInputAngle;
+  }
+  // A vertex of the input where segments of one facet meet at a small angle, or on a sharp segment:
+  // excused or not, segments are divided in shells around it.
+  [[nodiscard]] bool acute_vertex(const QuotientTetrahedralization& mesh, VertexId v) const {
+    return mesh.kind(v) == VertexKind::kInput && acute_vertices_[static_cast<std::size_t>(v)] != 0;
+  }
+
+ private:
+  void find_sharp_segments(const QuotientTetrahedralization& mesh);
+  void find_sharp_vertices(const QuotientTetrahedralization& mesh, bool tessellated);
+
+  double inverse_ratio2_;
+  double max_edge2_;
+  bool narrow_;
+  std::vector<double> max_volumes_;           // per region
+  std::vector<std::uint8_t> sharp_segments_;  // per segment
+  std::vector<std::uint8_t> sharp_vertices_;  // per vertex of the first mesh
+  std::vector<std::uint8_t> acute_vertices_;  // likewise
+};
+
+}  // namespace symcell::solid

@@ -1,0 +1,302 @@
+#include "core/solid/refine_and_improve.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "core/solid/delaunay/legalise.hpp"
+#include "core/solid/improve/improver.hpp"
+#include "core/solid/quotient/constraints.hpp"
+#include "core/solid/quotient/validate.hpp"
+#include "core/solid/refine/refiner.hpp"
+
+namespace symcell::solid {
+namespace {
+
+// The improvement works on tetrahedra with a dihedral angle below this or above its supplement.
+constexpr double kGoalDeg = 26;
+// And may cost a vertex, or a detour, where one is below this.
+constexpr double kCostlyGoalDeg = 25;
+constexpr int kLastPasses = 3;
+// Full rounds of improvement: the second takes off 5 to 10 % of the tetrahedra, the third 2 to 5 %,
+// each for a quarter more time, which large meshes are not given. Depths of refinement after each
+// round, full or not.
+constexpr std::size_t kRounds = 3;
+constexpr std::size_t kRoundsIfLarge = 2;
+constexpr std::size_t kLargeCell = 5'000;
+// Bad tetrahedra that are mended without a full round.
+constexpr std::size_t kFewBad = 10;
+constexpr double kFewBadShare = 5e-4;
+// Rounds after which more than this share of the bad tetrahedra is left are the last: what is bad
+// is the input's fault, and refinement only adds to it.
+constexpr double kLeastProgress = 0.9;
+constexpr int kDepths[] = {2, 2, 3, 4, 5};
+// Depths of refinement where no improvement follows. What is bad after a shallow run is little, and
+// so is the budget of the deeper one.
+constexpr int kDepthsAlone[] = {2, 3, 4};
+constexpr int kDepthsDelaunay[] = {2, 2, 3, 3, 4, 4, 6, 6, 8, 8};
+
+// What later runs of refinement add for the sake of shape is little in models without acute input.
+// Where it is not, it is a cascade.
+constexpr std::uint64_t kMostGrowth = 4;
+constexpr std::uint64_t kLeastGrowth = 2'000;
+
+// For the sake of shape no edge gets shorter than this share of the shortest one of the first mesh,
+// whatever the runs: into spikes of the input they would shrink without end.
+constexpr double kLeastDistance = 1.0 / 256;
+
+struct Work {
+  std::uint64_t most_shaped = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t most_tets = 0;
+  double least_distance = 0;
+  bool exempt_too = false;   // in later runs: most of what is bad at first is mended without
+  bool illegal_too = false;  // what is not Delaunay is refined like what is bad
+  RefineCounters refined;
+};
+
+double total_volume(const Editor& editor) {
+  double sum = 0;
+  for (TetId t = 0; t < editor.mesh().tet_slots(); ++t) {
+    if (editor.mesh().alive(t)) sum += editor.measures(t).volume;
+  }
+  return sum;
+}
+
+double shortest_edge(const Editor& editor) {
+  double least2 = std::numeric_limits<double>::infinity();
+  for (TetId t = 0; t < editor.mesh().tet_slots(); ++t) {
+    if (editor.mesh().alive(t)) least2 = std::min(least2, editor.measures(t).shortest2);
+  }
+  return std::sqrt(least2);
+}
+
+std::size_t count_bad(const Editor& editor, const Criteria& criteria) {
+  const QuotientTetrahedralization& mesh = editor.mesh();
+  std::size_t count = 0;
+  for (TetId t = 0; t < mesh.tet_slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    const bool exempt = criteria.exemption(mesh, mesh.tet(t)) != Exemption::kNone;
+    count += criteria.is_bad(editor.measures(t), mesh.tet(t).region, exempt) ? 1 : 0;
+  }
+  return count;
+}
+
+// A bound on the volume asks for at least volume / bound tetrahedra: refuse at once what cannot
+// fit.
+Result<double> check_volume_budget(const Editor& editor,
+                                   const Criteria& criteria,
+                                   const ExecutionContext& context) {
+  double least = 0;
+  for (TetId t = 0; t < editor.mesh().tet_slots(); ++t) {
+    if (!editor.mesh().alive(t)) continue;
+    least += editor.measures(t).volume / criteria.max_volume(editor.mesh().tet(t).region);
+  }
+  if (least <= static_cast<double>(context.max_elements())) return least;
+  return fail(ErrorCode::kElementLimit,
+              "the volume bounds ask for at least " + std::to_string(least) +
+                  " tetrahedra in the cell, max_elements is " +
+                  std::to_string(context.max_elements()) +
+                  "; raise max_volume (or the regions' max_volume) or max_elements");
+}
+
+Result<void> refine(
+    Editor& editor, const Criteria& criteria, int depth, ExecutionContext& context, Work& work) {
+  Refiner refiner(editor, criteria, context);
+  refiner.set_most_tets(work.most_tets);
+  refiner.set_most_shaped(work.most_shaped);
+  refiner.set_least_distance(work.least_distance);
+  refiner.set_max_depth(depth);
+  if (work.illegal_too) refiner.treat_illegal();
+  if (work.exempt_too) refiner.treat_exempt();
+  work.exempt_too = true;
+  auto done = refiner.run();
+  work.refined += refiner.counters();
+  work.most_shaped =
+      std::min(work.most_shaped, kMostGrowth * editor.mesh().tet_count() + kLeastGrowth);
+  return done;
+}
+
+// Full rounds of improvement, each followed by refinement of what it left over the bounds; then, as
+// long as something is bad, it is refined, ever deeper, and mended: alone where it is little.
+Result<void> improve(Editor& editor,
+                     const Criteria& criteria,
+                     const MeshOptions& options,
+                     ExecutionContext& context,
+                     Work& work) {
+  const double goal_deg = std::max(kGoalDeg, options.min_dihedral_deg);
+  const double goal = std::sin(goal_deg * std::numbers::pi / 180);
+  bool full = true;
+  std::size_t bad_before = editor.mesh().tet_count();
+  for (std::size_t round = 0; round < std::size(kDepths); ++round) {
+    context.report(Phase::kImprove, 0.6 + 0.05 * static_cast<double>(round),
+                   editor.mesh().tet_count());
+    if (full) editor.compact();
+    Surgery surgery(editor, criteria);
+    Improver improver(surgery, criteria, context);
+    if (auto ok = full ? improver.round(goal) : improver.mend(goal); !ok) return ok;
+    const std::size_t count = editor.mesh().tet_count();
+    const std::size_t rounds = count > kLargeCell ? kRoundsIfLarge : kRounds;
+    bool last = false;
+    if (round + 1 >= rounds) {
+      const std::size_t bad = count_bad(editor, criteria);
+      if (bad == 0) break;
+      last = static_cast<double>(bad) > kLeastProgress * static_cast<double>(bad_before);
+      bad_before = bad;
+      full = bad > kFewBad && static_cast<double>(bad) > kFewBadShare * static_cast<double>(count);
+    }
+    // What is too large must not stay, whatever else does.
+    const int depth = last ? kDepths[0] : kDepths[round];
+    if (auto ok = refine(editor, criteria, depth, context, work); !ok) return ok;
+    if (last) break;
+  }
+  if (options.delaunay) return {};  // flips undo what comes now
+  Surgery surgery(editor, criteria);
+  surgery.keep_size();
+  Improver improver(surgery, criteria, context);
+  const double costly_deg = std::max(kCostlyGoalDeg, options.min_dihedral_deg);
+  const double costly_goal = std::sin(costly_deg * std::numbers::pi / 180);
+  improver.allow_detours(costly_goal);
+  // What could not be mended may be after its neighbours were.
+  return improver.mend(goal, kLastPasses);
+}
+
+// Counts the exempt by reason and finds the worst shape. A broken size bound must not be handed
+// out.
+Result<void> count_exempt(const Editor& editor, const Criteria& criteria, RefinedSolid& result) {
+  std::uint64_t sharp = 0, axis = 0;
+  const QuotientTetrahedralization& mesh = editor.mesh();
+  for (TetId t = 0; t < mesh.tet_slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    const TetMeasures& m = editor.measures(t);
+    const double sine = min_dihedral_sine(mesh.corner_point(t, 0), mesh.corner_point(t, 1),
+                                          mesh.corner_point(t, 2), mesh.corner_point(t, 3));
+    const Exemption exemption = criteria.exemption(mesh, mesh.tet(t));
+    double& least = exemption == Exemption::kNone ? result.least_sine : result.least_exempt_sine;
+    least = std::min(least, sine);
+    if (criteria.size_excess2(m, mesh.tet(t).region) > 1) {
+      const Point3 x = mesh.corner_point(t, 0);
+      return fail(ErrorCode::kBoundUnreachable,
+                  "a volume or edge bound cannot be reached: a tetrahedron of volume " +
+                      std::to_string(m.volume) + " near (" + std::to_string(x.x) + ", " +
+                      std::to_string(x.y) + ", " + std::to_string(x.z) +
+                      ") of the axis' frame stays too large; raise max_volume or max_edge");
+    }
+    if (!criteria.is_bad(m, mesh.tet(t).region, false)) continue;
+    switch (exemption) {
+      case Exemption::kSmallInputAngle: ++sharp; break;
+      case Exemption::kAxis: ++axis; break;
+      case Exemption::kNone: ++result.guarded; break;
+    }
+  }
+  if (sharp > 0) result.exempt.push_back({"small_input_angle", sharp});
+  if (axis > 0) result.exempt.push_back({"fold_angle_at_axis", axis});
+  if (result.guarded > 0) result.exempt.push_back({"near_small_feature", result.guarded});
+  return {};
+}
+
+// Everything but the improvement. A mesh that is to be Delaunay is made so first, for circumcentres
+// mean little where it is not, and again after every run: what flips make bad is refined again.
+Result<void> refine_alone(Editor& editor,
+                          const Criteria& criteria,
+                          const MeshOptions& options,
+                          ExecutionContext& context,
+                          Work& work) {
+  if (!options.delaunay) {
+    for (const int depth : kDepthsAlone) {
+      if (auto ok = refine(editor, criteria, depth, context, work); !ok) return ok;
+    }
+    return {};
+  }
+  for (const int depth : kDepthsDelaunay) {
+    if (const auto flips = legalise(editor, context); !flips) {
+      return tl::unexpected<Error>(flips.error());
+    }
+    work.illegal_too = count_illegal(editor) > 0;
+    if (!work.illegal_too && count_bad(editor, criteria) == 0) return {};
+    if (auto ok = refine(editor, criteria, depth, context, work); !ok) return ok;
+  }
+  if (const auto flips = legalise(editor, context); !flips) {
+    return tl::unexpected<Error>(flips.error());
+  }
+  // Flips know of no bound; where the two cannot be had together, the bounds are kept.
+  if (count_bad(editor, criteria) == 0) return {};
+  return refine(editor, criteria, kDepthsDelaunay[0], context, work);
+}
+
+// Whether all of the facets and segments is covered, once, and nothing else.
+Result<void> check_cover(const InitialTetrahedralization& solid) {
+  const auto cover = measure_facet_cover(constraints_of(solid.mesh, solid.axis_segment()));
+  if (!cover) return tl::unexpected<Error>(cover.error());
+  return compare_facet_covers(solid.cover, *cover, solid.diameter);
+}
+
+Statistics::Refinement count_work(const Editor& editor, const RefineCounters& refined) {
+  Statistics::Refinement work;
+  const QuotientTetrahedralization& mesh = editor.mesh();
+  for (std::size_t v = 0; v < mesh.vertex_slots(); ++v) {
+    const VertexKind kind = mesh.kind(static_cast<VertexId>(v));
+    const bool steiner = kind != VertexKind::kInput && kind != VertexKind::kDeleted;
+    work.steiner_points += steiner ? 1 : 0;
+  }
+  work.splits = refined.segment_splits;
+  work.flips = editor.counters().flips;
+  work.crossings = editor.counters().crossings;
+  work.relocations = editor.counters().moves;
+  work.removed = editor.counters().collapses;
+  return work;
+}
+
+}  // namespace
+
+Result<RefinedSolid> refine_and_improve(InitialTetrahedralization solid,
+                                        const MeshOptions& options,
+                                        std::uint64_t most_tets,
+                                        ExecutionContext& context) {
+  RefinedSolid result;
+  result.solid = std::move(solid);
+  QuotientTetrahedralization& mesh = result.solid.mesh;
+  Editor editor(mesh);
+  const double volume = total_volume(editor);
+  const Criteria criteria(result.solid, options);
+  const auto least = check_volume_budget(editor, criteria, context);
+  if (!least) return tl::unexpected<Error>(least.error());
+  result.least_count = *least;
+  {
+    Surgery surgery(editor, criteria);
+    static_cast<void>(Improver(surgery, criteria, context).collapse_cut_vertices());
+  }
+  Work work;
+  work.most_tets = most_tets;
+  work.least_distance = kLeastDistance * shortest_edge(editor);
+  if (!options.plain) {
+    auto ok = refine(editor, criteria, kDepths[0], context, work);
+    if (ok) ok = improve(editor, criteria, options, context, work);
+    if (!ok) return tl::unexpected<Error>(ok.error());
+  }
+  if (options.plain || options.delaunay) {
+    auto ok = refine_alone(editor, criteria, options, context, work);
+    if (!ok) return tl::unexpected<Error>(ok.error());
+  }
+  result.refinement = count_work(editor, work.refined);
+  editor.compact();  // what follows goes from neighbour to neighbour
+  const auto begun = std::chrono::steady_clock::now();
+  const auto report = validate(mesh, ValidationLevel::kEmbedding, volume);
+  if (!report) return tl::unexpected<Error>(report.error());
+  if (auto ok = check_cover(result.solid); !ok) return tl::unexpected<Error>(ok.error());
+  result.check_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count();
+  result.delaunay = count_illegal(editor) == 0;
+  if (auto ok = count_exempt(editor, criteria, result); !ok) {
+    return tl::unexpected<Error>(ok.error());
+  }
+  mesh.compact_vertices();
+  return result;
+}
+
+}  // namespace symcell::solid

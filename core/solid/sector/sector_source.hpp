@@ -1,0 +1,35 @@
+// A symmetric solid from which exact sectors can be cut at several angles: where one candidate
+// fails (the cut meets the surface badly, or its tetrahedralization fails), the next is tried.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/execution_context.hpp"
+#include "core/solid/sector/sector.hpp"
+#include "core/solid/symmetry/solid_symmetry.hpp"
+
+namespace symcell::solid {
+
+class SectorSource {
+ public:
+  virtual ~SectorSource() = default;
+
+  [[nodiscard]] virtual const Symmetry& symmetry() const = 0;
+  [[nodiscard]] virtual const std::vector<std::string>& repairs() const = 0;
+
+  // The number of different sectors that may be asked for, >= 1.
+  [[nodiscard]] virtual std::int32_t candidates() const = 0;
+  // The first so many may be chosen from; the others are for those models that all of them fail on.
+  [[nodiscard]] virtual std::int32_t preferred() const { return candidates(); }
+  // Triangles that are worked on for one candidate. 0: candidates differ in nothing but the cut.
+  [[nodiscard]] virtual std::size_t effort() const { return 0; }
+  // Candidate `index` in [0, candidates()), the most promising first.  Errors: kInternal or a model
+  // code if this candidate cannot be cut; limits.
+  [[nodiscard]] virtual Result<Sector> sector(std::int32_t index,
+                                              ExecutionContext& context) const = 0;
+};
+
+}  // namespace symcell::solid

@@ -1,0 +1,385 @@
+#include "core/solid/sector/surface_sector_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "core/base/random.hpp"
+#include "core/geometry/self_intersections.hpp"
+#include "core/geometry/spatial_order.hpp"
+#include "core/geometry/surface_distance.hpp"
+#include "core/model/describe.hpp"
+#include "core/solid/sector/glue_cuts.hpp"
+#include "core/solid/sector/quotient_to_sector.hpp"
+#include "core/solid/sector/wedge_cut.hpp"
+#include "core/solid/surface/improve_surface.hpp"
+#include "core/solid/surface/narrow_corners.hpp"
+#include "core/solid/surface/planar_patches.hpp"
+
+namespace symcell::solid {
+namespace {
+
+// A sector's volume times n against the input's: of the volume, or, where nothing comes so near, of
+// a shell as thick as the symmetry error, by which sectors may differ.
+constexpr double kVolumeRel = 1e-3;
+constexpr double kShellShare = 0.5;
+// Vertices nearer to a cut than a share of the tolerance are moved onto it. The first way is what
+// worked best on real files; the others are for those it fails on. Wide tolerances move more than
+// narrow sectors and small features bear: then less of them is used.
+struct Way {
+  double snap_share;
+  double tolerance_share;
+  double shell_share;
+  std::int32_t cuts;
+};
+constexpr std::array<Way, 9> kWays = {{{0.3, 1, 0, 12},
+                                       {1, 1, 0, 4},
+                                       {0, 1, 0, 6},
+                                       {0.3, 1, kShellShare, 4},
+                                       {0, 1, kShellShare, 3},
+                                       {0.3, 0.25, kShellShare, 4},
+                                       {0, 0.25, kShellShare, 2},
+                                       {0.3, 0.06, kShellShare, 3},
+                                       {0, 0.06, kShellShare, 2}}};
+// Where nothing is cut; walls thinner than the tolerance need less of it.
+constexpr std::array<double, 3> kWholeShares = {1, 0.06, 0.004};
+// Cuts whose curves differ by more than so many tolerances do not match: of use are tolerances of
+// half the symmetry error and above.
+constexpr double kMatchTolerances = 2;
+// Vertices of the two cut curves nearer than this share of the tolerance are one.
+constexpr double kMergeShare = 0.3;
+// Coordinates come in single precision or with six digits: noise as a share of the largest one, and
+// of the diameter at least.
+constexpr double kSinglePrecision = 2.5e-7;
+constexpr double kLeastNoiseRel = 1e-6;
+// Facets of CAD parts may be so far from flat, of the tolerance, by the axis' own error.
+constexpr double kFlatShareOfTolerance = 0.02;
+// Shares of the tolerance that the improvement of the triangles may use, tried in turn until hardly
+// any thin triangle is left. With narrow corners two results are enough.
+constexpr std::array<double, 6> kImproveShares = {0.35, 0.3, 0.25, 0.2, 0.1, 0.05};
+constexpr int kEnoughTaken = 2;
+// Surfaces that must be divided for the sake of their shapes take their time: no more shares once
+// the results have so many triangles, and so many times those given.
+constexpr std::size_t kManyTriangles = 20'000;
+constexpr std::size_t kManyTimes = 4;
+// So many triangles of curved parts may be thin: height below a fifth of the longest side.
+constexpr double kThinShape = 0.2;
+constexpr double kThinShare = 0.002;
+// Each narrow corner counts as so many elements, and any of them as so much more of all: a mesh
+// without bad tetrahedra is worth some more good ones.
+constexpr double kNarrowCost = 400;
+constexpr double kNarrowFactor = 1.5;
+// Boundary squared over area is 16 for a square and 4 times length over width for a strip, which
+// takes two triangles for each square of its width.
+constexpr double kSquareRound = 2;
+// Of its longest side: no triangle counts as flatter.
+constexpr double kLeastHeight = 1e-4;
+
+IndexedSurface restored_sector(const QuotientSurface& s) {
+  const RotationTable rotations(s.fold);
+  IndexedSurface flat;
+  std::vector<std::int32_t> lower(s.points.size(), -1), higher(s.points.size(), -1);
+  for (const QuotientTriangle& t : s.triangles) {
+    Triangle corners{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::int32_t& id = (t[i].exponent == 0 ? lower : higher)[t[i].orbit];
+      if (id < 0) {
+        id = static_cast<std::int32_t>(flat.points.size());
+        flat.points.push_back(corner_point(s, rotations, t[i]));
+      }
+      corners[i] = id;
+    }
+    flat.triangles.push_back(corners);
+  }
+  return flat;
+}
+
+struct PatchFigures {
+  double area = 0;
+  double boundary = 0;
+};
+
+std::map<std::int32_t, PatchFigures> patch_figures(const QuotientSurface& s,
+                                                   const RotationTable& rotations) {
+  std::map<std::int32_t, PatchFigures> patches;
+  for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+    if (s.patch[t] < 0) continue;
+    const QuotientTriangle& c = s.triangles[t];
+    patches[s.patch[t]].area +=
+        length(area_normal(corner_point(s, rotations, c[0]), corner_point(s, rotations, c[1]),
+                           corner_point(s, rotations, c[2]))) /
+        2;
+  }
+  const std::vector<QuotientEdgeUse> uses = sorted_edge_uses(s);
+  for (std::size_t i = 0; i + 1 < uses.size(); i += 2) {
+    const std::int32_t p = s.patch[uses[i].triangle], q = s.patch[uses[i + 1].triangle];
+    if (p == q) continue;
+    const QuotientTriangle& c = s.triangles[uses[i].triangle];
+    const double side = distance(corner_point(s, rotations, c[uses[i].side]),
+                                 corner_point(s, rotations, c[(uses[i].side + 1) % 3]));
+    if (p >= 0) patches[p].boundary += side;
+    if (q >= 0) patches[q].boundary += side;
+  }
+  return patches;
+}
+
+SectorShape shape_of(const QuotientSurface& s) {
+  const RotationTable rotations(s.fold);
+  std::size_t thin = 0;
+  SectorShape shape;
+  std::map<std::pair<std::int32_t, std::int32_t>, double> corners;  // of planar patches
+  for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+    std::array<Point3, 3> p;
+    for (std::size_t i = 0; i < 3; ++i) p[i] = corner_point(s, rotations, s.triangles[t][i]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Point3 u = p[(i + 1) % 3] - p[i], v = p[(i + 2) % 3] - p[i];
+      const double angle = std::atan2(length(cross(u, v)), dot(u, v));
+      if (s.patch[t] >= 0) {
+        corners[{s.patch[t], s.triangles[t][i].orbit}] += angle;
+      } else {
+        shape.narrow += angle < kNarrowCorner ? 1 : 0;
+      }
+    }
+    if (s.patch[t] >= 0) continue;
+    const auto& [a, b, c] = p;
+    const double longest2 =
+        std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)});
+    const double twice_area = length(area_normal(a, b, c));
+    thin += twice_area < kThinShape * longest2 ? 1 : 0;
+    shape.cost += longest2 / std::max(twice_area, kLeastHeight * longest2);
+  }
+  for (const auto& [patch, figures] : patch_figures(s, rotations)) {
+    shape.cost += figures.boundary * figures.boundary / (kSquareRound * figures.area);
+  }
+  for (const auto& [corner, angle] : corners) shape.narrow += angle < kNarrowCorner ? 1 : 0;
+  shape.cost += kNarrowCost * static_cast<double>(shape.narrow);
+  if (shape.narrow > 0) shape.cost *= kNarrowFactor;
+  shape.thin = static_cast<double>(thin) / static_cast<double>(s.triangles.size());
+  return shape;
+}
+
+}  // namespace
+
+bool SectorShape::many_thin() const {
+  return thin > kThinShare;
+}
+
+bool SectorShape::better_than(const SectorShape& other) const {
+  return many_thin() != other.many_thin() ? other.many_thin() : cost < other.cost;
+}
+
+namespace {
+
+BoundaryTopology topology_of(const IndexedSurface& surface) {
+  std::vector<OrbitTriangle> triangles;
+  triangles.reserve(surface.triangles.size());
+  for (const Triangle& t : surface.triangles) {
+    triangles.push_back({OrbitVertex{t[0], 0}, OrbitVertex{t[1], 0}, OrbitVertex{t[2], 0}});
+  }
+  const std::vector<std::uint8_t> on_axis(surface.points.size(), 0);
+  return boundary_topology(1, on_axis, triangles);
+}
+
+}  // namespace
+
+SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean, Symmetry symmetry, double tolerance)
+    : symmetry_(std::move(symmetry)),
+      repairs_(std::move(clean.repairs)),
+      tolerance_(tolerance),
+      volume_(clean.volume),
+      area_(clean.area),
+      full_(std::move(clean.surface)) {
+  double largest = 0;
+  for (Point3& p : full_.points) {
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    p = symmetry_.frame.to_local(p);
+  }
+  topology_ = topology_of(full_);
+  noise_ = std::max(kSinglePrecision * largest, kLeastNoiseRel * symmetry_.diameter);
+  tree_ = TriangleTree(full_.points, full_.triangles);
+  samples_ = samples_of(full_);
+  choose_candidates();
+}
+
+// Angles in the middle of the widest gaps between vertices, modulo the sector, each in a sector of
+// its own; the same angles with each way of snapping.
+void SurfaceSectorSource::choose_candidates() {
+  if (symmetry_.fold == 1) {
+    for (const double share : kWholeShares) candidates_.push_back({0, 0, share * tolerance_, 0});
+    preferred_ = 1;
+    return;
+  }
+  const double sector = 2 * std::numbers::pi / symmetry_.fold;
+  std::vector<double> angles;
+  for (const Point3& p : full_.points) {
+    if (std::hypot(p.x, p.y) <= tolerance_) continue;
+    const double angle = std::fmod(std::atan2(p.y, p.x) + 2 * std::numbers::pi, sector);
+    angles.push_back(angle);
+  }
+  std::sort(angles.begin(), angles.end());
+  struct Gap {
+    double width, middle;
+  };
+  std::vector<Gap> gaps;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double next = i + 1 < angles.size() ? angles[i + 1] : angles[0] + sector;
+    gaps.push_back({next - angles[i], (angles[i] + next) / 2});
+  }
+  std::sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) {
+    return a.width != b.width ? a.width > b.width : a.middle < b.middle;
+  });
+  Random random(1);
+  for (const Way& way : kWays) {
+    const double tolerance = way.tolerance_share * tolerance_;
+    if (way.tolerance_share < 1 &&
+        kMatchTolerances * tolerance < symmetry_.error_rel * symmetry_.diameter) {
+      break;
+    }
+    for (std::int32_t i = 0; i < way.cuts; ++i) {
+      const auto which = std::min(static_cast<std::size_t>(i), gaps.size() - 1);
+      const auto copy = static_cast<std::int32_t>(random.next() % symmetry_.fold);
+      candidates_.push_back({gaps[which].middle + copy * sector, way.snap_share * tolerance,
+                             tolerance, way.shell_share});
+      preferred_ += way.shell_share == 0 ? 1 : 0;
+    }
+  }
+}
+
+// What each share of the tolerance leads to differs from part to part, and how much of it the
+// symmetry error has used up from place to place: a result that is no longer the input's shape is
+// none.
+Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
+                                                 const Candidate& candidate,
+                                                 const FlatnessTolerances& flatness,
+                                                 ExecutionContext& context) const {
+  const QuotientSurface given = surface;
+  Error last;
+  std::optional<SectorShape> best;
+  int taken = 0;
+  std::size_t made = 0;
+  for (const double share : kImproveShares) {
+    QuotientSurface improved = given;
+    if (auto done = improve_surface(improved, share * candidate.tolerance, flatness, context);
+        !done) {
+      return tl::unexpected<Error>(done.error());
+    }
+    const SectorShape shape = shape_of(improved);
+    ++taken;
+    made += improved.triangles.size();
+    if (!best || shape.better_than(*best)) {
+      if (auto same = check_shape(improved, candidate.shell_share, context); !same) {
+        if (auto state = context.check(); !state) return tl::unexpected<Error>(state.error());
+        // A cut that is off before anything is improved is off at every share.
+        if (last.message.empty() && !check_shape(given, candidate.shell_share, context)) {
+          return tl::unexpected(same.error());
+        }
+        last = same.error();
+        --taken;
+        continue;
+      }
+      surface = std::move(improved);
+      best = shape;
+    }
+    if (!best->many_thin() && (best->narrow == 0 || taken >= kEnoughTaken)) break;
+    if (made > kManyTriangles + kManyTimes * given.triangles.size()) break;
+  }
+  if (!best) return tl::unexpected<Error>(last);
+  best->made = made;
+  return *best;
+}
+
+Result<void> SurfaceSectorSource::check_shape(const QuotientSurface& surface,
+                                              double shell_share,
+                                              ExecutionContext& context) const {
+  const BoundaryTopology topology =
+      boundary_topology(surface.fold, surface.on_axis, surface.triangles);
+  if (topology.shells != topology_.shells || topology.euler != topology_.euler) {
+    return fail(
+        ErrorCode::kInternal,
+        "the sector has another topology than the surface: " + std::to_string(topology.shells) +
+            " shells, Euler characteristic " + std::to_string(topology.euler) + ", for " +
+            std::to_string(topology_.shells) + " and " + std::to_string(topology_.euler));
+  }
+  const double volume = full_volume(surface);
+  const double error = symmetry_.error_rel * symmetry_.diameter;
+  const double most = std::max(kVolumeRel * std::abs(volume_), shell_share * error * area_);
+  if (!(std::abs(volume - volume_) <= most)) {
+    return fail(ErrorCode::kInternal, "the sector's volume is wrong: " + describe_rounded(volume) +
+                                          " for " + describe_rounded(volume_));
+  }
+  const IndexedSurface restored = restored_sector(surface);
+  if (auto near = check_distances(restored, context); !near) return near;
+  auto crossing = self_intersections(restored, 1, context);
+  if (!crossing) return tl::unexpected<Error>(crossing.error());
+  if (!crossing->empty()) return fail(ErrorCode::kInternal, "the sector intersects itself");
+  return {};
+}
+
+// Over the whole model: every copy near the input, all of the input near a copy.
+Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
+                                                  ExecutionContext& context) const {
+  const RotationTable rotations(symmetry_.fold);
+  const auto failure = fail(ErrorCode::kInternal, "the sector is too far from the surface");
+  const std::vector<Point3> samples = samples_of(sector);
+  IndexedSurface all;
+  std::int32_t last = -1;
+  for (std::int32_t k = 0; k < symmetry_.fold; ++k) {
+    if (auto state = context.check(); !state) return state;
+    for (const Point3& p : samples) {
+      if (!tree_.within(rotations.rotate(p, k), tolerance_, last)) return failure;
+    }
+    const auto first = static_cast<std::int32_t>(all.points.size());
+    for (const Point3& p : sector.points) all.points.push_back(rotations.rotate(p, k));
+    for (const Triangle& t : sector.triangles) {
+      all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+  }
+  if (auto state = context.check(); !state) return state;
+  const TriangleTree copies(all.points, all.triangles);
+  last = -1;
+  const bool near = std::all_of(samples_.begin(), samples_.end(), [&](const Point3& p) {
+    return copies.within(p, tolerance_, last);
+  });
+  return near ? Result<void>{} : failure;
+}
+
+Result<Sector> SurfaceSectorSource::sector(std::int32_t index, ExecutionContext& context) const {
+  const Candidate& candidate = candidates_[index];
+  QuotientSurface quotient;
+  if (symmetry_.fold == 1) {
+    quotient.points = full_.points;
+    quotient.on_axis.assign(full_.points.size(), 0);
+    quotient.on_cut.assign(full_.points.size(), 0);
+    for (const Triangle& t : full_.triangles) {
+      quotient.triangles.push_back({OrbitVertex{t[0], 0}, {t[1], 0}, {t[2], 0}});
+      const Point3 n = area_normal(full_, t);
+      quotient.normals.push_back((1 / length(n)) * n);
+    }
+  } else {
+    auto patch = cut_wedge(full_, symmetry_.fold, candidate.start_angle, candidate.snap);
+    if (!patch) return tl::unexpected<Error>(patch.error());
+    auto glued = glue_cuts(std::move(*patch), kMatchTolerances * candidate.tolerance,
+                           kMergeShare * candidate.tolerance, context);
+    if (!glued) return tl::unexpected<Error>(glued.error());
+    quotient = std::move(glued->surface);
+  }
+  const FlatnessTolerances flatness{noise_,
+                                    std::max(noise_, kFlatShareOfTolerance * candidate.tolerance)};
+  if (auto flat = flatten_planar_patches(quotient, flatness, context); !flat) {
+    return tl::unexpected<Error>(flat.error());
+  }
+  const auto shape = improve(quotient, candidate, flatness, context);
+  if (!shape) return tl::unexpected<Error>(shape.error());
+  auto sector = quotient_to_sector(quotient);
+  if (sector) {
+    sector->narrow_corners = shape->narrow;
+    sector->meshing_cost = shape->cost;
+    sector->triangles_made = shape->made;
+  }
+  return sector;
+}
+
+}  // namespace symcell::solid

@@ -1,0 +1,81 @@
+// Exact sectors of a closed surface that is symmetric in shape but not in its triangles.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/geometry/triangle_tree.hpp"
+#include "core/guard/boundary_topology.hpp"
+#include "core/solid/sector/sector_source.hpp"
+#include "core/solid/surface/clean_surface.hpp"
+#include "core/solid/surface/planar_patches.hpp"
+#include "core/solid/surface/quotient_surface.hpp"
+
+namespace symcell::solid {
+
+// How well a sector's triangles can be meshed.
+struct SectorShape {
+  std::int64_t narrow = 0;  // corners of facets that no good tetrahedron fits into
+  double thin = 0;          // share of thin triangles of curved parts
+  // Elements that the surface takes: as long as a triangle or strip is high, along its length; and
+  // what refinement adds at narrow corners in vain.
+  double cost = 0;
+  std::size_t made = 0;  // triangles, of this surface and others it was chosen from
+
+  [[nodiscard]] bool many_thin() const;
+  [[nodiscard]] bool better_than(const SectorShape& other) const;
+};
+
+class SurfaceSectorSource final : public SectorSource {
+ public:
+  // `clean`: without problem, input coordinates.  `tolerance`: input units.
+  SurfaceSectorSource(CleanSurface clean, Symmetry symmetry, double tolerance);
+
+  [[nodiscard]] const Symmetry& symmetry() const override { return symmetry_; }
+  [[nodiscard]] const std::vector<std::string>& repairs() const override { return repairs_; }
+  [[nodiscard]] std::int32_t candidates() const override {
+    return static_cast<std::int32_t>(candidates_.size());
+  }
+  [[nodiscard]] std::int32_t preferred() const override { return preferred_; }
+  [[nodiscard]] std::size_t effort() const override {
+    return full_.triangles.size() / static_cast<std::size_t>(symmetry_.fold) + 1;
+  }
+  [[nodiscard]] Result<Sector> sector(std::int32_t index, ExecutionContext& context) const override;
+
+ private:
+  struct Candidate {
+    double start_angle;
+    // Lengths.
+    double snap;
+    double tolerance;
+    double shell_share;  // see check_shape
+  };
+  void choose_candidates();
+  [[nodiscard]] Result<SectorShape> improve(QuotientSurface& surface,
+                                            const Candidate& candidate,
+                                            const FlatnessTolerances& flatness,
+                                            ExecutionContext& context) const;
+  // Of the input's shells and Euler characteristic, and of its volume, or off by that share of a
+  // shell as thick as the symmetry error at most; near the input everywhere; without crossings.
+  [[nodiscard]] Result<void> check_shape(const QuotientSurface& surface,
+                                         double shell_share,
+                                         ExecutionContext& context) const;
+  [[nodiscard]] Result<void> check_distances(const IndexedSurface& sector,
+                                             ExecutionContext& context) const;
+
+  Symmetry symmetry_;
+  std::vector<std::string> repairs_;
+  double tolerance_;
+  double noise_;                 // of coordinates
+  double volume_;                // of the input
+  double area_;                  // likewise
+  IndexedSurface full_;          // local frame
+  BoundaryTopology topology_;    // of full_
+  TriangleTree tree_;            // of full_
+  std::vector<Point3> samples_;  // of full_
+  std::vector<Candidate> candidates_;
+  std::int32_t preferred_ = 0;  // of them: with the whole tolerance
+};
+
+}  // namespace symcell::solid

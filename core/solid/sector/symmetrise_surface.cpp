@@ -1,0 +1,63 @@
+#include <utility>
+
+#include "core/solid/sector/surface_sector_source.hpp"
+#include "core/solid/sector/symmetrise.hpp"
+#include "core/solid/surface/clean_surface.hpp"
+#include "core/solid/symmetry/detect_surface_symmetry.hpp"
+
+namespace symcell::solid {
+Result<std::unique_ptr<SectorSource>> symmetrise_surface(const TriangleSurface& surface,
+                                                         const MeshOptions& options,
+                                                         ExecutionContext& context) {
+  const double tolerance_rel =
+      options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel);
+  auto clean = clean_surface(surface, context, tolerance_rel);
+  if (!clean) return tl::unexpected<Error>(clean.error());
+  if (clean->problem) return tl::unexpected<Error>(*clean->problem);
+  auto symmetry = detect_surface_symmetry(*clean, options, context);
+  if (!symmetry) return tl::unexpected<Error>(symmetry.error());
+  const double tolerance = tolerance_rel * clean->diameter;
+  return std::make_unique<SurfaceSectorSource>(std::move(*clean), symmetry->symmetry, tolerance);
+}
+
+Result<SolidInspection> inspect_surface(const TriangleSurface& surface,
+                                        const MeshOptions& options,
+                                        ExecutionContext& context) {
+  auto clean = clean_surface(surface, context,
+                             options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel));
+  if (!clean) return tl::unexpected<Error>(clean.error());
+  SolidInspection result;
+  result.kind = "surface";
+  result.volume = clean->volume;
+  result.surface_area = clean->area;
+  result.diameter = clean->diameter;
+  result.bbox_min = clean->box.low;
+  result.bbox_max = clean->box.high;
+  result.watertight = !clean->problem || clean->problem->code != ErrorCode::kNotWatertight;
+  result.vertices = clean->surface.points.size();
+  result.facets = clean->surface.triangles.size();
+  result.shells = static_cast<std::size_t>(clean->shells);
+  result.repairs = clean->repairs;
+  if (clean->problem) {
+    result.problem = clean->problem->message;
+    return result;
+  }
+  auto found = detect_surface_symmetry(*clean, options, context);
+  if (!found) {
+    const ErrorCode code = found.error().code;
+    if (code != ErrorCode::kAmbiguousSymmetry && code != ErrorCode::kNotSymmetric) {
+      return tl::unexpected<Error>(found.error());
+    }
+    result.problem = found.error().message;
+    return result;
+  }
+  const Symmetry& symmetry = found->symmetry;
+  result.fold = symmetry.fold;
+  result.axis_origin = symmetry.frame.origin;
+  result.axis_direction = symmetry.frame.direction();
+  result.symmetry_error_rel = symmetry.error_rel;
+  result.folds = found->folds;
+  return result;
+}
+
+}  // namespace symcell::solid

@@ -1,0 +1,32 @@
+// The axis and fold of a shape, found or checked.
+//
+// Per axis, a ladder of folds with errors. "The largest fold within the tolerance" would be wrong:
+// a fine polygon passes every fold for a circle. A fold is dropped if another one, neither dividing
+// the other, has less than a quarter of its error, or if its error is far above those of its own
+// divisors; the largest left counts. A shape that any angle fits is a surface of revolution: which
+// fold is meant must then be told.
+#pragma once
+
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/base/execution_context.hpp"
+#include "core/model/mesh_options.hpp"
+#include "core/plane/symmetry/symmetrise.hpp"
+#include "core/solid/surface/clean_surface.hpp"
+#include "core/solid/symmetry/solid_symmetry.hpp"
+
+namespace symcell::solid {
+
+struct DetectedSymmetry {
+  Symmetry symmetry;
+  std::vector<FoldCandidate> folds;  // the ladder about the axis, ascending
+};
+
+// Requires: `clean` has no problem.
+// Errors: kBadFold, kBadAxis, kNotSymmetric, kAmbiguousSymmetry, limits.
+[[nodiscard]] Result<DetectedSymmetry> detect_surface_symmetry(const CleanSurface& clean,
+                                                               const MeshOptions& options,
+                                                               ExecutionContext& context);
+
+}  // namespace symcell::solid

@@ -1,0 +1,158 @@
+// A planar full mesh against its PSLG: every vertex and piece of segment that the meshed domain
+// has is there, and the mesh ends where the domain does.
+#include <algorithm>
+#include <array>
+
+#include "core/geometry/point_tree.hpp"
+#include "core/verify/against_model.hpp"
+
+namespace symcell::internal {
+namespace {
+
+enum class On : char { kNothing = 0, kConstraint = 1, kBoundary = 2 };
+
+class PlanarChecker {
+ public:
+  PlanarChecker(const FacetedMesh& full, const PlanarModel& model, double tolerance, Checks& checks)
+      : full_(full),
+        pslg_(*model.pslg),
+        model_(model.subdomains),
+        tolerance_(tolerance),
+        checks_(checks),
+        on_(full.group_count(), On::kNothing) {}
+
+  std::vector<char> run() {
+    match_vertices();
+    cover_pieces();
+    check_boundary();
+    std::vector<char> constrained(on_.size());
+    std::ranges::transform(on_, constrained.begin(),
+                           [](On on) { return static_cast<char>(on != On::kNothing); });
+    check_seeds(constrained);
+    return constrained;
+  }
+
+ private:
+  [[nodiscard]] bool meshed(std::int32_t half_edge) const {
+    return model_.left_of(half_edge).meshed;
+  }
+
+  // Vertices of the domain, loose ones among them; those outside, where a dangling segment may
+  // end, need not be nodes.
+  [[nodiscard]] std::vector<char> needed_vertices() const {
+    std::vector<char> needed(pslg_.vertices.size(), 0);
+    const plane::PlanarMap& map = model_.map;
+    for (std::size_t p = 0; p < map.pieces.size(); ++p) {
+      const auto half_edge = static_cast<std::int32_t>(2 * p);
+      if (!meshed(half_edge) && !meshed(half_edge + 1)) continue;
+      needed[static_cast<std::size_t>(map.pieces[p].a)] = 1;
+      needed[static_cast<std::size_t>(map.pieces[p].b)] = 1;
+    }
+    for (std::size_t v = 0; v < needed.size(); ++v) {
+      const std::int32_t face = map.vertex_face[v];
+      if (face >= 0 && model_.faces[static_cast<std::size_t>(face)].meshed) needed[v] = 1;
+    }
+    return needed;
+  }
+
+  void match_vertices() {
+    const PointTree tree(full_.mesh.points);
+    const std::vector<char> needed = needed_vertices();
+    node_of_.assign(needed.size(), -1);
+    Flaws flaws;
+    for (std::size_t v = 0; v < needed.size(); ++v) {
+      if (needed[v] == 0) continue;
+      const Point2 p = pslg_.vertices[v];
+      const auto hit = tree.nearest({p.x, p.y, 0});
+      if (hit.distance <= tolerance_) {
+        node_of_[v] = hit.point;
+        continue;
+      }
+      flaws.note([&] {
+        return "vertex " + std::to_string(v) + " of the model is no node; the nearest is off by " +
+               shown(hit.distance);
+      });
+    }
+    flaws.report(checks_, "model.vertices");
+  }
+
+  void cover_pieces() {
+    const NodeGraph graph(full_.mesh);
+    const plane::PlanarMap& map = model_.map;
+    Flaws flaws;
+    for (std::size_t p = 0; p < map.pieces.size(); ++p) {
+      const auto half_edge = static_cast<std::int32_t>(2 * p);
+      const bool left = meshed(half_edge), right = meshed(half_edge + 1);
+      if (!left && !right) continue;
+      const plane::PlanarPiece& piece = map.pieces[p];
+      if (cover(graph, piece, left == right ? On::kConstraint : On::kBoundary)) continue;
+      flaws.note([&] {
+        return "segment " + std::to_string(piece.segment) + " of the model, from vertex " +
+               std::to_string(piece.a) + " to " + std::to_string(piece.b) +
+               ", is no chain of edges";
+      });
+    }
+    flaws.report(checks_, "model.segments");
+  }
+
+  bool cover(const NodeGraph& graph, const plane::PlanarPiece& piece, On on) {
+    const std::int32_t from = node_of_[static_cast<std::size_t>(piece.a)];
+    const std::int32_t to = node_of_[static_cast<std::size_t>(piece.b)];
+    if (from < 0 || to < 0) return false;
+    const auto chain = straight_chain(full_.mesh, graph, from, to, tolerance_);
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      std::array<std::int32_t, 3> edge{chain[i - 1], chain[i], -1};
+      sort_facet(edge, 2);
+      on_[full_.find(edge)] = on;
+    }
+    return !chain.empty();
+  }
+
+  void check_boundary() {
+    Flaws outside, inside;
+    for (std::size_t g = 0; g < full_.group_count(); ++g) {
+      const auto name = [&] { return facet_name(full_.first(g).nodes); };
+      if (full_.sides(g) == 1 && on_[g] != On::kBoundary) {
+        outside.note([&] {
+          return "boundary " + name() + " of the mesh lies on no segment that bounds the domain";
+        });
+      }
+      if (full_.sides(g) != 1 && on_[g] == On::kBoundary) {
+        inside.note(
+            [&] { return name() + " has elements on both sides, but the domain ends there"; });
+      }
+    }
+    outside.report(checks_, "model.boundary");
+    inside.report(checks_, "model.boundary_complete");
+  }
+
+  void check_seeds(const std::vector<char>& constrained) {
+    std::vector<Point3> holes;
+    for (const Point2 p : pslg_.holes) holes.push_back({p.x, p.y, 0});
+    std::vector<RegionSeed> regions;
+    for (const PslgRegion& r : pslg_.regions) {
+      regions.push_back({{r.point.x, r.point.y, 0}, r.attribute, r.max_area});
+    }
+    check_regions(full_, constrained, holes, regions, checks_);
+  }
+
+  const FacetedMesh& full_;
+  const Pslg& pslg_;
+  const plane::Subdomains& model_;
+  double tolerance_;
+  Checks& checks_;
+  std::vector<On> on_;                 // per edge of the mesh
+  std::vector<std::int32_t> node_of_;  // per vertex of the model, -1: none
+};
+
+}  // namespace
+
+std::vector<char> check_model(const FacetedMesh& full,
+                              const PlanarModel& model,
+                              double tolerance,
+                              double /*diameter*/,
+                              Checks& checks) {
+  return PlanarChecker(full, model, tolerance, checks).run();
+}
+
+}  // namespace symcell::internal

@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/triangle_tree.hpp"
+#include "core/verify/against_model.hpp"
+
+namespace symcell::internal {
+namespace {
+
+// Samples of the surface: enough to notice a missing feature that is not much smaller than the
+// tolerance in area, few enough to take seconds.
+constexpr double kSamples = 100'000;
+constexpr std::size_t kSamplesATriangle = 2000;
+
+using Corners = std::array<Point3, 3>;
+
+// f(Point3) for points spread evenly over a triangle, `count` of them about, one at least.
+template <class F>
+void each_sample(const Corners& p, std::size_t count, F f) {
+  const auto steps = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+  for (std::size_t i = 0; i < steps; ++i) {
+    for (std::size_t j = 0; j + i < steps; ++j) {
+      const double u = (static_cast<double>(i) + 1.0 / 3) / static_cast<double>(steps);
+      const double v = (static_cast<double>(j) + 1.0 / 3) / static_cast<double>(steps);
+      f(p[0] + u * (p[1] - p[0]) + v * (p[2] - p[0]));
+    }
+  }
+}
+
+double area_of(const Corners& p) {
+  return 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
+}
+
+// The largest distance seen and where; points beyond the tolerance are all that need to be exact.
+struct Farthest {
+  double tolerance = 0;
+  std::size_t beyond = 0;
+  double distance = 0;
+  std::string where;
+
+  void look(const TriangleTree& tree, const Point3& p, const char* what) {
+    const auto near = tree.nearest(p, tolerance);
+    if (near.triangle >= 0) {
+      distance = std::max(distance, std::sqrt(near.squared));
+      return;
+    }
+    if (beyond++ > 0) return;
+    where = std::string(what) + " at (" + shown(p.x) + ", " + shown(p.y) + ", " + shown(p.z) + ")";
+  }
+  [[nodiscard]] std::string text() const {
+    return beyond == 0 ? "farthest " + shown(distance)
+                       : where + " is farther than " + shown(tolerance) + "; " +
+                             std::to_string(beyond) + " such points";
+  }
+};
+
+class SurfaceChecker {
+ public:
+  SurfaceChecker(const FacetedMesh& full,
+                 const SurfaceModel& model,
+                 double tolerance,
+                 Checks& checks)
+      : full_(full),
+        surface_(model),
+        model_(*model.given),
+        tolerance_(tolerance),
+        checks_(checks) {}
+
+  std::vector<char> run() {
+    std::vector<Triangle> faces;
+    for (std::size_t g = 0; g < full_.group_count(); ++g) {
+      if (full_.sides(g) == 1) faces.push_back(full_.first(g).nodes);
+    }
+    const TriangleTree surface(model_.vertices, model_.triangles);
+    const TriangleTree boundary(full_.mesh.points, faces);
+
+    Farthest from_mesh{tolerance_, 0, 0, {}};
+    std::vector<char> seen(full_.mesh.points.size(), 0);
+    for (const Triangle& face : faces) {
+      Point3 sum;
+      for (const std::int32_t node : face) {
+        const auto at = static_cast<std::size_t>(node);
+        sum = sum + full_.mesh.points[at];
+        if (seen[at]++ == 0) from_mesh.look(surface, full_.mesh.points[at], "the node");
+      }
+      from_mesh.look(surface, (1.0 / 3) * sum, "the middle of a face");
+    }
+    checks_.add("model.on_surface", from_mesh.beyond == 0, from_mesh.text());
+
+    Farthest from_surface{tolerance_, 0, 0, {}};
+    double area = 0;
+    for (const Triangle& t : model_.triangles) area += area_of(corners(t));
+    for (const Triangle& t : model_.triangles) {
+      const Corners p = corners(t);
+      for (const Point3& corner : p) from_surface.look(boundary, corner, "the surface");
+      const double share = area > 0 ? kSamples * area_of(p) / area : 1;
+      each_sample(
+          p, std::min(static_cast<std::size_t>(share) + 1, kSamplesATriangle),
+          [&](const Point3& sample) { from_surface.look(boundary, sample, "the surface"); });
+    }
+    checks_.add("model.covered", from_surface.beyond == 0, from_surface.text());
+
+    check_topology(faces);
+    // Inner faces are free, as surfaces have no internal facets.
+    return std::vector<char>(full_.group_count(), 0);
+  }
+
+ private:
+  // A mesh with a crack, a void or a missing element is near the surface everywhere and still has
+  // another boundary.
+  void check_topology(const std::vector<Triangle>& boundary) {
+    if (!surface_.manifold) {
+      checks_.skip("model.topology", "the surface is not closed with two triangles at each edge");
+      return;
+    }
+    const auto text = [](const SurfaceTopology& t) {
+      return std::to_string(t.shells) + " shells of Euler characteristic " +
+             std::to_string(t.euler);
+    };
+    const SurfaceTopology mesh = topology_of(boundary);
+    const SurfaceTopology wanted = topology_of(surface_.welded.triangles);
+    checks_.add("model.topology", mesh == wanted,
+                "the mesh's boundary has " + text(mesh) + ", the surface " + text(wanted));
+  }
+
+  [[nodiscard]] Corners corners(const Triangle& t) const {
+    Corners p;
+    for (std::size_t i = 0; i < 3; ++i) p[i] = model_.vertices[static_cast<std::size_t>(t[i])];
+    return p;
+  }
+
+  const FacetedMesh& full_;
+  const SurfaceModel& surface_;
+  const TriangleSurface& model_;
+  double tolerance_;
+  Checks& checks_;
+};
+
+}  // namespace
+
+std::vector<char> check_model(const FacetedMesh& full,
+                              const SurfaceModel& model,
+                              double tolerance,
+                              double /*diameter*/,
+                              Checks& checks) {
+  return SurfaceChecker(full, model, tolerance, checks).run();
+}
+
+}  // namespace symcell::internal

@@ -1,0 +1,203 @@
+#include <algorithm>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "core/geometry/predicates.hpp"
+#include "core/geometry/predicates_3.hpp"
+#include "core/verify/support.hpp"
+
+namespace symcell::internal {
+namespace {
+
+// Mid nodes farther from the midpoint than this share of the edge are refused.
+constexpr double kMidTolerance = 1e-6;
+constexpr double kFar = std::numeric_limits<double>::infinity();
+// An axis whose squared length is farther from 1 was not written as a unit vector.
+constexpr double kUnitTolerance = 1e-9;
+bool check_corners(const MeshData& mesh, const std::string& tag, Checks& checks) {
+  const auto k = static_cast<std::size_t>(mesh.nodes_per_element);
+  std::vector<char> used(mesh.points.size(), 0);
+  std::string wrong;
+  for (std::size_t at = 0; at < mesh.elements.size(); at += k) {
+    for (std::size_t i = 0; i < k; ++i) {
+      used[static_cast<std::size_t>(mesh.elements[at + i])] = 1;
+      for (std::size_t j = 0; j < i && wrong.empty(); ++j) {
+        if (mesh.elements[at + i] == mesh.elements[at + j]) {
+          wrong = "element " + std::to_string(at / k) + " names a node twice";
+        }
+      }
+    }
+  }
+  const auto unused = std::ranges::find(used, 0);
+  if (unused != used.end() && wrong.empty()) {
+    wrong = "node " + std::to_string(unused - used.begin()) + " belongs to no element";
+  }
+  return checks.add(tag + ".corners", wrong.empty(), wrong);
+}
+
+bool check_orientation(const MeshData& mesh, const std::string& tag, Checks& checks) {
+  std::size_t bad = 0;
+  std::size_t first = 0;
+  for (std::size_t e = mesh.element_count(); e-- > 0;) {
+    const std::array<Point3, 4> p = corners_of(mesh, e);
+    const Sign sign = mesh.dimension == 2 ? orientation(planar(p[0]), planar(p[1]), planar(p[2]))
+                                          : orientation_3(p[0], p[1], p[2], p[3]);
+    if (sign == Sign::kPositive) continue;
+    ++bad;
+    first = e;
+  }
+  return checks.add(tag + ".orientation", bad == 0,
+                    bad == 0 ? ""
+                             : std::to_string(bad) + " elements are flat or turned over, first " +
+                                   std::to_string(first));
+}
+
+// Sorted into columns wider than the tolerance, along z in space and along y in the plane, close
+// nodes stand side by side; further passes shift the columns, for pairs that a border parts.
+bool check_duplicates(const MeshData& mesh,
+                      const std::string& tag,
+                      double tolerance,
+                      Checks& checks) {
+  const double width = std::max(4 * tolerance, std::numeric_limits<double>::min());
+  const bool plane = mesh.dimension == 2;
+  Point3 low{kFar, kFar, kFar};
+  for (const Point3& p : mesh.points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+  }
+  struct Place {
+    double column_x, column_y, along;
+    std::size_t node;
+    [[nodiscard]] auto key() const { return std::tuple(column_x, column_y, along, node); }
+  };
+  std::vector<Place> order(mesh.points.size());
+  std::string wrong;
+  const auto pass = [&](double shift_x, double shift_y) {
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const Point3& p = mesh.points[i];
+      order[i] = {std::floor((p.x - low.x) / width + shift_x),
+                  plane ? 0 : std::floor((p.y - low.y) / width + shift_y), plane ? p.y : p.z, i};
+    }
+    std::ranges::sort(order, {}, &Place::key);
+    for (std::size_t i = 0; i < order.size() && wrong.empty(); ++i) {
+      const Place& first = order[i];
+      const Point3& p = mesh.points[first.node];
+      for (std::size_t j = i + 1; j < order.size(); ++j) {
+        const Place& second = order[j];
+        if (second.column_x != first.column_x || second.column_y != first.column_y) break;
+        if (second.along - first.along > tolerance) break;
+        const Point3& q = mesh.points[second.node];
+        if (std::abs(q.x - p.x) > tolerance || std::abs(q.y - p.y) > tolerance) continue;
+        wrong = "nodes " + std::to_string(first.node) + " and " + std::to_string(second.node) +
+                " coincide";
+        break;
+      }
+    }
+  };
+  for (const double shift_x : {0.0, 0.5}) {
+    pass(shift_x, 0);
+    if (!plane) pass(shift_x, 0.5);
+  }
+  return checks.add(tag + ".duplicates", wrong.empty(), wrong);
+}
+
+bool check_conforming(const FacetedMesh& mesh, const std::string& tag, Checks& checks) {
+  Flaws flaws;
+  for (std::size_t g = 0; g < mesh.group_count(); ++g) {
+    const auto name = [&] { return facet_name(mesh.first(g).nodes); };
+    if (mesh.sides(g) > 2) {
+      flaws.note([&] { return name() + " has " + std::to_string(mesh.sides(g)) + " elements"; });
+    }
+    if (mesh.sides(g) == 2 && mesh.first(g).even == mesh.second(g).even) {
+      flaws.note([&] { return name() + " has both elements on one side"; });
+    }
+  }
+  return flaws.report(checks, tag + ".conforming");
+}
+
+// Each mid node belongs to one edge and is no corner.
+void note_shared_mid_nodes(const MeshData& mesh, std::vector<ElementEdge> edges, Flaws& flaws) {
+  const auto k = static_cast<std::size_t>(mesh.nodes_per_element);
+  const auto corners = static_cast<std::size_t>(mesh.dimension) + 1;
+  std::vector<char> corner(mesh.points.size(), 0);
+  for (std::size_t at = 0; at < mesh.elements.size(); at += k) {
+    for (std::size_t i = 0; i < corners; ++i) {
+      corner[static_cast<std::size_t>(mesh.elements[at + i])] = 1;
+    }
+  }
+  std::ranges::sort(edges, {}, &ElementEdge::mid);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto mid = static_cast<std::size_t>(edges[i].mid);
+    const std::string name = "mid node " + std::to_string(mid);
+    if (corner[mid] != 0) flaws.note([&] { return name + " is a corner too"; });
+    if (i > 0 && edges[i - 1].mid == edges[i].mid) {
+      flaws.note([&] { return name + " belongs to two edges"; });
+    }
+  }
+}
+
+bool check_mid_nodes(const MeshData& mesh, const std::string& tag, Checks& checks) {
+  Flaws flaws;
+  double worst = 0;
+  const std::vector<ElementEdge> edges = element_edges(mesh);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const ElementEdge& e = edges[i];
+    const auto name = [&] { return facet_name({e.low, e.high, -1}); };
+    const bool twice = i > 0 && edges[i - 1].low == e.low && edges[i - 1].high == e.high;
+    if (twice) flaws.note([&] { return name() + " has two mid nodes"; });
+    const Point3& a = mesh.points[static_cast<std::size_t>(e.low)];
+    const Point3& b = mesh.points[static_cast<std::size_t>(e.high)];
+    const Point3& m = mesh.points[static_cast<std::size_t>(e.mid)];
+    // Edges without length are found as coinciding nodes; the least divisor keeps 0 / 0 away.
+    const double off =
+        distance(0.5 * (a + b), m) / std::max(distance(a, b), std::numeric_limits<double>::min());
+    worst = std::max(worst, off);
+    if (off > kMidTolerance) {
+      flaws.note([&] { return name() + ": its mid node is off by " + shown(off) + " of it"; });
+    }
+  }
+  note_shared_mid_nodes(mesh, edges, flaws);
+  return flaws.report(checks, tag + ".mid_nodes", "farthest from a midpoint: " + shown(worst));
+}
+
+}  // namespace
+
+bool check_fields(const MeshData& mesh, const std::string& tag, Checks& checks) {
+  std::string wrong;
+  const Point3& u = mesh.axis_direction;
+  const bool plane = mesh.dimension == 2;
+  if (mesh.fold < 1) wrong = "fold " + std::to_string(mesh.fold) + " is below 1";
+  if (plane && (u.x != 0 || u.y != 0 || std::abs(u.z) != 1)) {
+    wrong = "the axis is not normal to the plane";
+  }
+  const Point3& o = mesh.axis_origin;
+  if (!(std::abs(squared_length(u) - 1) <= kUnitTolerance) || !std::isfinite(o.x + o.y + o.z)) {
+    wrong = "the axis is no point and unit vector";
+  }
+  if (mesh.elements.empty()) wrong = "no elements";
+  if (mesh.single_precision) wrong = "coordinates are not of 64 bits";
+  for (std::size_t i = 0; i < mesh.points.size() && wrong.empty(); ++i) {
+    const Point3& p = mesh.points[i];
+    const bool fits =
+        std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && (!plane || p.z == 0);
+    if (!fits) {
+      wrong = "node " + std::to_string(i) + " is not finite" +
+              (plane ? " or not in the plane z = 0" : "");
+    }
+  }
+  return checks.add(tag + ".fields", wrong.empty(), wrong);
+}
+
+bool check_elements(const FacetedMesh& mesh,
+                    const std::string& tag,
+                    double tolerance,
+                    Checks& checks) {
+  if (!check_corners(mesh.mesh, tag, checks)) return false;
+  bool ok = check_orientation(mesh.mesh, tag, checks);
+  ok &= check_duplicates(mesh.mesh, tag, tolerance, checks);
+  ok &= check_conforming(mesh, tag, checks);
+  if (mesh.mesh.order == 2) ok &= check_mid_nodes(mesh.mesh, tag, checks);
+  return ok;
+}
+
+}  // namespace symcell::internal

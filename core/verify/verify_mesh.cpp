@@ -1,0 +1,236 @@
+#include "core/verify/verify_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/verify/against_model.hpp"
+#include "core/verify/support.hpp"
+#include "core/verify/symmetry.hpp"
+
+namespace symcell {
+namespace {
+
+using internal::Checks;
+using internal::ExaminedModel;
+using internal::FacetedMesh;
+using internal::ModelPinches;
+using internal::shown;
+
+// Nodes closer than this share of the diameter are one node written twice.
+constexpr double kDuplicateRel = 1e-10;
+// A mesh is symmetric and the model only nearly: nodes may be off by the model's own asymmetry and
+// by as much again where it was averaged, on either side of a vertex.
+constexpr double kAsymmetries = 4;
+// Rounding of a sum over all elements, and what a tessellation may differ by, as shares.
+constexpr double kExactMeasureRel = 1e-9;
+constexpr double kSurfaceMeasureRel = 1e-2;
+// Units in the last place that a correct mesh far from the origin may be off by.
+constexpr double kRoundings = 16;
+
+class Verifier {
+ public:
+  Verifier(const MeshData& cell,
+           const MeshData* full,
+           const Model* model,
+           const VerifyOptions& options,
+           VerifyReport& report)
+      : cell_(cell), full_(full), model_(model), options_(options), checks_(report) {}
+
+  void run() {
+    if (!internal::check_fields(cell_, "cell", checks_)) return;
+    const internal::Turns turns(cell_);
+    examine_model();
+    diameter_ = the_diameter(turns);
+    tolerance_ = std::max(options_.tolerance_rel * diameter_, rounding());
+    if (model_known_) set_model_tolerance(turns);
+    const FacetedMesh cell(cell_);
+    if (!internal::check_elements(cell, "cell", duplicate_tolerance(), checks_)) return;
+    internal::tell_quality(cell_, checks_);
+    internal::check_links(cell, "cell", pinches(), checks_);
+    if (!internal::check_pairs(cell_, turns, tolerance_, checks_)) return;
+    const internal::CellBounds bounds =
+        internal::check_bounds(cell, turns, tolerance_, pinches(), checks_);
+    if (full_ != nullptr) {
+      look_at_full(cell, bounds, turns, *full_);
+      return;
+    }
+    const std::size_t nodes = cell_.points.size() * static_cast<std::size_t>(cell_.fold);
+    if (nodes <= options_.most_restored_nodes) {
+      look_at_full(cell, bounds, turns, internal::restore(cell_, turns));
+      return;
+    }
+    checks_.skip("full.fields", "the full mesh is too large to be restored here; give its file");
+    check_model_measure(internal::total_measure(cell_) * cell_.fold);
+  }
+
+ private:
+  [[nodiscard]] bool plane() const { return cell_.dimension == 2; }
+
+  void examine_model() {
+    if (model_ == nullptr) return;
+    if (is_planar(kind_of(*model_)) != plane()) {
+      checks_.add("model.valid", false, "the model has another dimension than the mesh");
+      return;
+    }
+    Result<ExaminedModel> examined = internal::examine_model(*model_);
+    checks_.add("model.valid", examined.has_value(), examined ? "" : examined.error().message);
+    if (!examined) return;
+    examined_ = std::move(*examined);
+    model_known_ = true;
+  }
+
+  // The model's own where it is known: a box round a skew solid is larger than one along its axis.
+  [[nodiscard]] double the_diameter(const internal::Turns& turns) const {
+    if (model_known_) return examined_.facts.diameter;
+    return full_ != nullptr ? internal::diameter(full_->points) : restored_diameter(turns);
+  }
+
+  [[nodiscard]] double restored_diameter(const internal::Turns& turns) const {
+    if (cell_.fold == 1) return internal::diameter(cell_.points);
+    double reach = 0;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Point3& p : cell_.points) {
+      const Point3 local = turns.local(p);
+      reach = std::max(reach, length(internal::planar(local)));
+      low = std::min(low, local.z);
+      high = std::max(high, local.z);
+    }
+    return std::hypot(2 * reach, high - low);
+  }
+
+  [[nodiscard]] double rounding() const {
+    const auto size = [](const Point3& p) {
+      return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    };
+    double largest = size(cell_.axis_origin);
+    for (const Point3& p : cell_.points) largest = std::max(largest, size(p));
+    return kRoundings * std::numeric_limits<double>::epsilon() * largest;
+  }
+
+  [[nodiscard]] double duplicate_tolerance() const {
+    return std::min(tolerance_, kDuplicateRel * diameter_);
+  }
+
+  [[nodiscard]] bool is_surface() const { return kind_of(*model_) == ModelKind::kSurface; }
+
+  void set_model_tolerance(const internal::Turns& turns) {
+    if (cell_.fold > 1) {
+      asymmetry_ = internal::model_asymmetry(*model_, diameter_,
+                                             [&](const Point3& p) { return turns.rotated(p, 1); });
+    }
+    if (options_.model_tolerance_rel) {
+      model_tolerance_ = *options_.model_tolerance_rel * diameter_;
+    } else if (is_surface()) {
+      model_tolerance_ = kSurfaceToleranceRel * diameter_;
+    } else {
+      model_tolerance_ = kAsymmetries * asymmetry_;
+    }
+    model_tolerance_ = std::max(model_tolerance_, tolerance_);
+    examined_.facts.pinches.tolerance = model_tolerance_;
+  }
+
+  // Without a model nothing excuses a pinch.
+  [[nodiscard]] const ModelPinches& pinches() const { return examined_.facts.pinches; }
+
+  void look_at_full(const FacetedMesh& cell,
+                    const internal::CellBounds& bounds,
+                    const internal::Turns& turns,
+                    const MeshData& mesh) {
+    if (!internal::check_fields(mesh, "full", checks_)) return;
+    const FacetedMesh full(mesh);
+    if (!internal::check_elements(full, "full", duplicate_tolerance(), checks_)) return;
+    const bool copies =
+        internal::check_copies(cell_, mesh, turns, tolerance_, every_region(), checks_);
+    if (copies) internal::check_cell_in_full(cell, bounds, full, tolerance_, checks_);
+    internal::check_links(full, "full", pinches(), checks_);
+    internal::check_hanging_nodes(full, tolerance_, checks_);
+    check_pieces(full);
+    check_measure(mesh);
+    internal::tell_delaunay(full, check_full_model(full), checks_);
+  }
+
+  // Regions of a model need not be copies of each other, if they were ignored: then they are
+  // compared with the model's seeds instead.
+  [[nodiscard]] bool every_region() const {
+    if (model_ == nullptr) return true;
+    if (const auto* pslg = std::get_if<Pslg>(model_)) return pslg->regions.empty();
+    const auto* plc = std::get_if<Plc>(model_);
+    return plc == nullptr || plc->regions.empty();
+  }
+
+  void check_pieces(const FacetedMesh& full) {
+    if (!model_known_ || !examined_.facts.pieces) {
+      checks_.skip("full.pieces", "needs a model that is enclosed");
+      return;
+    }
+    internal::UnionFind parts(full.mesh.element_count());
+    internal::each_inner_facet(full, [&](std::int32_t a, std::int32_t b) { parts.join(a, b); });
+    const std::size_t found = parts.class_count(), wanted = *examined_.facts.pieces;
+    checks_.add("full.pieces", found == wanted,
+                std::to_string(found) + " connected pieces, the model " + std::to_string(wanted));
+  }
+
+  void check_measure(const MeshData& full) {
+    const double expected = internal::total_measure(cell_) * cell_.fold;
+    const double found = internal::total_measure(full);
+    // What a layer of one tolerance round the mesh holds.
+    const double layer = 4 * diameter_ * (plane() ? 1 : diameter_);
+    const double allowed = kExactMeasureRel * expected + tolerance_ * layer;
+    checks_.add(plane() ? "full.area" : "full.volume", std::abs(found - expected) <= allowed,
+                shown(found) + ", cell times fold " + shown(expected));
+    check_model_measure(found);
+  }
+
+  void check_model_measure(double found) {
+    std::optional<double> wanted = options_.model_measure;
+    if (!wanted && model_known_) wanted = examined_.facts.measure;
+    if (!wanted) return;
+    const bool surface = model_ != nullptr && is_surface();
+    // A boundary moved by a distance changes what it encloses by that distance times its size.
+    const double moved = options_.model_tolerance_rel ? model_tolerance_ : 2 * asymmetry_;
+    const double allowed = (surface ? kSurfaceMeasureRel : kExactMeasureRel) * std::abs(*wanted) +
+                           moved * examined_.facts.boundary_size;
+    checks_.add(plane() ? "model.area" : "model.volume", std::abs(found - *wanted) <= allowed,
+                shown(found) + ", the model's " + shown(*wanted) + ", off by " +
+                    shown(std::abs(found - *wanted)));
+  }
+
+  std::vector<char> check_full_model(const FacetedMesh& full) {
+    if (!model_known_) {
+      if (model_ == nullptr) checks_.skip("model.boundary", "no model was given");
+      return std::vector<char>(full.group_count(), 0);
+    }
+    return std::visit(
+        [&](const auto& model) {
+          return internal::check_model(full, model, model_tolerance_, diameter_, checks_);
+        },
+        examined_.geometry);
+  }
+
+  const MeshData& cell_;
+  const MeshData* full_;
+  const Model* model_;
+  const VerifyOptions& options_;
+  Checks checks_;
+  ExaminedModel examined_;
+  bool model_known_ = false;
+  double diameter_ = 0;
+  double tolerance_ = 0;        // of pairs, copies and hanging nodes
+  double model_tolerance_ = 0;  // of nodes against the model
+  double asymmetry_ = 0;
+};
+
+}  // namespace
+
+VerifyReport verify_mesh(const MeshData& cell,
+                         const MeshData* full,
+                         const Model* model,
+                         const VerifyOptions& options) {
+  VerifyReport report;
+  Verifier(cell, full, model, options, report).run();
+  return report;
+}
+
+}  // namespace symcell
