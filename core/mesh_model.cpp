@@ -34,7 +34,7 @@ Result<MeshOutcome> mesh_with(const Symmetrise& symmetrise,
                               ExecutionContext& context) {
   const Clock::time_point start = Clock::now();
   context.report(Phase::kSymmetry, 0.02);
-  const Result<std::unique_ptr<solid::SectorSource>> source = plane::symmetrise();
+  const Result<std::unique_ptr<solid::SectorSource>> source = symmetrise();
   if (!source) return tl::unexpected(source.error());
   const double symmetry_ms = milliseconds_since(start);
   Result<MeshOutcome> outcome = solid::mesh_solid(**source, options, context);

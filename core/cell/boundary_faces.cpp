@@ -36,7 +36,7 @@ class FaceFinder {
  private:
   enum : std::uint8_t { kInner, kBound, kOuter };
 
-  struct solid::HalfFace {
+  struct HalfFace {
     FaceKey key;                // equal for the copies of one face
     std::uint32_t half = 0;     // 4 * element + opposite corner
     std::int32_t exponent = 0;  // of the copy
@@ -63,7 +63,7 @@ class FaceFinder {
       const KeyedFace face = make_face_key(rotations_, named, axis);
       halves_[h] = {face.key, static_cast<std::uint32_t>(h), face.reference};
     }
-    std::ranges::sort(halves_, {}, [](const solid::HalfFace& f) {
+    std::ranges::sort(halves_, {}, [](const HalfFace& f) {
       return std::tuple(f.key.high, f.key.low, f.exponent, f.half);
     });
   }
@@ -99,7 +99,7 @@ class FaceFinder {
 
   const SymmetryCellMesh& cell_;
   RotationTable rotations_;
-  std::vector<solid::HalfFace> halves_;
+  std::vector<HalfFace> halves_;
 };
 
 }  // namespace

@@ -9,15 +9,15 @@ namespace {
 struct Named {
   VertexId v;
   std::int32_t k;
-  bool operator<(const Named& o) const { return v != o.orbit ? v < o.orbit : k < o.exponent; }
+  bool operator<(const Named& o) const { return v != o.v ? v < o.v : k < o.k; }
 };
 
 FaceKey pack(const std::array<Named, 3>& c) {
   const auto u32 = [](std::int32_t i) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i));
   };
-  return {u32(c[0].orbit) << 32 | u32(c[1].orbit),
-          u32(c[2].orbit) << 32 | u32(c[1].exponent) << 16 | u32(c[2].exponent)};
+  return {u32(c[0].v) << 32 | u32(c[1].v),
+          u32(c[2].v) << 32 | u32(c[1].k) << 16 | u32(c[2].k)};
 }
 
 bool less(const FaceKey& a, const FaceKey& b) {
@@ -46,7 +46,7 @@ KeyedFace make_face_key(const RotationTable& rotations,
                         std::array<bool, 3> on_axis) {
   // Three compare-exchanges sort by vertex id.
   const auto order = [&](std::size_t i, std::size_t j) {
-    if (corners[j].orbit < corners[i].v) {
+    if (corners[j].orbit < corners[i].orbit) {
       std::swap(corners[i], corners[j]);
       std::swap(on_axis[i], on_axis[j]);
     }
@@ -83,7 +83,7 @@ KeyedFace make_face_key(const RotationTable& rotations,
 
 EdgeKey make_edge_key(
     const RotationTable& rotations, OrbitVertex a, OrbitVertex b, bool a_on_axis, bool b_on_axis) {
-  if (b.orbit < a.v) {
+  if (b.orbit < a.orbit) {
     std::swap(a, b);
     std::swap(a_on_axis, b_on_axis);
   }

@@ -174,7 +174,7 @@ struct Closure {
 
 Closure closure_of(const IndexedSurface& surface) {
   Closure result;
-  const std::vector<EdgeUse> uses = solid::sorted_edge_uses(surface.triangles);
+  const std::vector<EdgeUse> uses = sorted_edge_uses(surface.triangles);
   for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
     std::size_t forward = 0;
     for (std::size_t i = begin; i < end; ++i) forward += uses[i].forward ? 1 : 0;
@@ -286,7 +286,7 @@ SurfaceTopology topology_of(std::span<const Triangle> triangles) {
     shells.join(first, number(t[2]));
   }
   std::int64_t edges = 0;
-  const std::vector<EdgeUse> uses = solid::sorted_edge_uses(triangles);
+  const std::vector<EdgeUse> uses = sorted_edge_uses(triangles);
   for_each_edge(uses, [&](std::size_t, std::size_t) { ++edges; });
   return {shells.class_count(), static_cast<std::int64_t>(vertices.size()) - edges +
                                     static_cast<std::int64_t>(triangles.size())};

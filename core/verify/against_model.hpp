@@ -63,7 +63,7 @@ struct ExaminedModel {
 // (first) and on the other.
 struct SidedTriangles {
   std::span<const Point3> points;
-  std::vector<plane::Triangle> triangles;
+  std::vector<Triangle> triangles;
   std::vector<std::array<bool, 2>> material;
 };
 // Edges and vertices at which the material falls apart.  Requires: triangles meet in common edges
@@ -76,7 +76,7 @@ struct SurfaceTopology {
   std::int64_t euler = 0;
   friend bool operator==(const SurfaceTopology&, const SurfaceTopology&) = default;
 };
-[[nodiscard]] SurfaceTopology topology_of(std::span<const plane::Triangle> triangles);
+[[nodiscard]] SurfaceTopology topology_of(std::span<const Triangle> triangles);
 
 // model.*: the full mesh against the model. Return, per group of equal facets, whether it is
 // constrained; the mesh's dimension is that of the model.

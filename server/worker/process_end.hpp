@@ -26,7 +26,7 @@ enum class EndKind : std::uint8_t {
   kTimeLimit,       // killed by the server or, for processor time, by the kernel
   kMemoryLimit,     // refused memory
   kCrash,           // a signal of its own making, or an unexpected exit
-  solid::kOutside,  // killed by somebody else: the operator, the kernel when memory is short
+  kOutside,  // killed by somebody else: the operator, the kernel when memory is short
 };
 
 [[nodiscard]] std::string_view end_kind_name(EndKind kind);

@@ -15,7 +15,7 @@
 namespace symcell::fuzz {
 namespace {
 
-constexpr std::int32_t solid::kOutside = 0;  // the cell round all others
+constexpr std::int32_t kOutside = 0;  // the cell round all others
 constexpr std::array<double, 8> kSteps{1, 1, 0.5, 2, 0.25, 0.1, 1.5, 0.03};
 
 std::size_t at(std::int32_t i) {
@@ -29,8 +29,8 @@ struct Cell {
 };
 
 struct Face {
-  std::int32_t a = solid::kOutside;  // cells
-  std::int32_t b = solid::kOutside;
+  std::int32_t a = kOutside;  // cells
+  std::int32_t b = kOutside;
   std::vector<std::int32_t> corners;  // a segment's two, or a polygon's
   std::int32_t plane = 0;             // solids: faces of one number lie in one plane
   bool wall = false;                  // part of the model whatever the cells are
@@ -281,7 +281,7 @@ Grid layered_grid(const PlanarGrid& plan,
     }
   }
   const auto cell_at = [&](std::int32_t layer, std::int32_t c) {
-    return c < 0 || layer < 0 || layer >= layers ? solid::kOutside : 1 + layer * plan_cells + c;
+    return c < 0 || layer < 0 || layer >= layers ? kOutside : 1 + layer * plan_cells + c;
   };
   for (std::int32_t l = 0; l <= layers; ++l) {
     for (std::int32_t c = 0; c < plan_cells; ++c) {
@@ -348,7 +348,7 @@ Seeds seeds_of(const Grid& grid, const std::vector<std::uint8_t>& in_model) {
   Seeds seeds;
   Components components(grid, in_model);
   std::vector<std::uint8_t> seen(grid.cells.size(), 0);
-  seen[at(components.find(solid::kOutside))] = 1;
+  seen[at(components.find(kOutside))] = 1;
   for (std::size_t c = 1; c < grid.cells.size(); ++c) {
     const Cell& cell = grid.cells[c];
     if (cell.value != 0) seeds.measure += cell.measure;

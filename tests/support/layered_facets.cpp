@@ -207,7 +207,7 @@ std::vector<Sheet> make_sheets(const LayeredCells& cells) {
       sheets[at(layers + 1 + e.line)].push_back(std::move(face));
     }
   }
-  for (Sheet& sheet : sheets) solid::find_neighbours(sheet);
+  for (Sheet& sheet : sheets) find_neighbours(sheet);
   return sheets;
 }
 

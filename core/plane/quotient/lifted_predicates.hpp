@@ -21,10 +21,10 @@
 namespace symcell::plane {
 
 namespace internal {
-inline constexpr double kLiftInCircleRadius = 128.0 * kUnitRoundoff;
-inline constexpr double kLiftInCircleLength = 64.0 * kUnitRoundoff;
-inline constexpr double kLiftOrientationRadius = 24.0 * kUnitRoundoff;
-inline constexpr double kLiftOrientationLength = 8.0 * kUnitRoundoff;
+inline constexpr double kLiftInCircleRadius = 128.0 * symcell::internal::kUnitRoundoff;
+inline constexpr double kLiftInCircleLength = 64.0 * symcell::internal::kUnitRoundoff;
+inline constexpr double kLiftOrientationRadius = 24.0 * symcell::internal::kUnitRoundoff;
+inline constexpr double kLiftOrientationLength = 8.0 * symcell::internal::kUnitRoundoff;
 
 [[nodiscard]] inline double radius_bound(Point2 p) {
   return std::abs(p.x) + std::abs(p.y);
@@ -38,7 +38,7 @@ inline constexpr double kLiftOrientationLength = 8.0 * kUnitRoundoff;
   const double extent = std::max(internal::radius_bound(ac), internal::radius_bound(bc));
   const double bound = extent * (internal::kLiftOrientationRadius * radius +
                                  internal::kLiftOrientationLength * extent);
-  return internal::decide(cross(ac, bc), bound);
+  return symcell::internal::decide(cross(ac, bc), bound);
 }
 
 // The bound is the same whichever of the points is d. `slack`: factor on it, for checks that must
@@ -54,7 +54,7 @@ inline constexpr double kLiftOrientationLength = 8.0 * kUnitRoundoff;
   const double bound =
       extent * extent * extent *
       (internal::kLiftInCircleRadius * radius + internal::kLiftInCircleLength * extent);
-  return internal::decide(determinant, slack * bound);
+  return symcell::internal::decide(determinant, slack * bound);
 }
 
 namespace internal {
@@ -68,7 +68,7 @@ template <class... Corners>
     if (c.orbit == mesh.centre()) return;
     if (k < 0) {
       k = c.exponent;
-    } else if (k != c.k) {
+    } else if (k != c.exponent) {
       same = false;
     }
   };

@@ -64,7 +64,7 @@ void Criteria::find_corners(const QuotientTriangulation& mesh) {
     }
   }
   std::sort(narrow_.begin(), narrow_.end(),
-            [](const NarrowCorner& a, const NarrowCorner& b) { return a.orbit < b.orbit; });
+            [](const NarrowCorner& a, const NarrowCorner& b) { return a.v < b.v; });
 }
 
 void Criteria::add_corner(const QuotientTriangulation& mesh, VertexId v, Point2 from, Point2 to) {
@@ -117,7 +117,7 @@ bool Criteria::in_narrow_corner(const QuotientTriangulation& mesh,
   const Point2 d = mesh.rotations().rotate(middle - p, back);
   const auto first =
       std::lower_bound(narrow_.begin(), narrow_.end(), v,
-                       [](const NarrowCorner& c, VertexId id) { return c.orbit < id; });
+                       [](const NarrowCorner& c, VertexId id) { return c.v < id; });
   for (auto it = first; it != narrow_.end() && it->v == v; ++it) {
     if (cross(it->from, d) > 0 && cross(d, it->to) > 0) return true;
   }

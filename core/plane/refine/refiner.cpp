@@ -46,7 +46,7 @@ Refiner::Refiner(Editor& editor,
     if (!mesh_.alive(t)) continue;
     const Triangle& tri = mesh_.triangle(t);
     shortest2 = std::min(shortest2, criteria_.assess(mesh_, tri).shortest2);
-    for (const VertexId v : tri.orbit) extent = std::max(extent, length(mesh_.point(v)));
+    for (const VertexId v : tri.v) extent = std::max(extent, length(mesh_.point(v)));
   }
   const double cascade = kCascadeRatio * std::sqrt(shortest2);
   const double limit = std::max(cascade, kResolution * extent);

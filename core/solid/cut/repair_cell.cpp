@@ -269,7 +269,7 @@ class CellRepairer {
   [[nodiscard]] std::vector<VertexId> corners_of(const MoveSet& moves) const {
     std::vector<VertexId> corners;
     for (const Move& m : moves) {
-      for (const VertexId v : mesh_.tet(m.t).orbit) corners.push_back(v);
+      for (const VertexId v : mesh_.tet(m.t).v) corners.push_back(v);
     }
     std::sort(corners.begin(), corners.end());
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());

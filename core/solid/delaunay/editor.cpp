@@ -317,7 +317,7 @@ std::int64_t Editor::find_lost(Cavity& cavity) {
   const auto on_boundary = [&](OrbitVertex x) {
     const VertexMark& m = marks_[static_cast<std::size_t>(x.orbit)];
     if (m.epoch != mark) return false;
-    if (m.exponent == x.exponent) return true;
+    if (m.k == x.exponent) return true;
     // The last copy to be marked hides the others.
     for (const CavityFace& f : cavity.faces) {
       if (f.corners[0] == x || f.corners[1] == x || f.corners[2] == x) return true;

@@ -37,7 +37,7 @@ bool Surgery::smooth(VertexId v) {
   double reach2 = std::numeric_limits<double>::infinity();
   for (const StarTet& s : star_tets()) {
     for (std::uint32_t i = 0; i < 4; ++i) {
-      if ((s.own >> i & 1) == 0 || s.c[i].k != 0) continue;
+      if ((s.own >> i & 1) == 0 || s.c[i].exponent != 0) continue;
       for (std::uint32_t j = 0; j < 4; ++j) {
         if (j == i) continue;
         reach2 = std::min(reach2, squared_distance(s.p[i], s.p[j]));
@@ -55,7 +55,7 @@ bool Surgery::smooth(VertexId v) {
         if (t.facet[f] == kNoFacet || t.facet[f] != mesh_.parent(v)) continue;
         const auto& c = star_tets_[n];
         bool at = false;
-        for (const std::uint32_t k : kFaceCorners[f]) at = at || (c.c[k].v == v && c.c[k].k == 0);
+        for (const std::uint32_t k : kFaceCorners[f]) at = at || (c.c[k].orbit == v && c.c[k].exponent == 0);
         if (!at) continue;
         const Point3 m = cross(c.p[kFaceCorners[f][1]] - c.p[kFaceCorners[f][0]],
                                c.p[kFaceCorners[f][2]] - c.p[kFaceCorners[f][0]]);

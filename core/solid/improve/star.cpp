@@ -20,14 +20,14 @@ void Surgery::load_star_tet(TetCopy c, VertexId v, StarTet& s) const {
   for (std::uint32_t i = 0; i < 4; ++i) {
     s.c[i] = mesh_.corner(c, i);
     s.p[i] = mesh_.lift(s.c[i]);
-    const bool exempt = criteria_.exemption(mesh_, s.c[i].v) != Exemption::kNone;
+    const bool exempt = criteria_.exemption(mesh_, s.c[i].orbit) != Exemption::kNone;
     s.exempt = s.exempt || exempt;
-    if (s.c[i].v != v) {
+    if (s.c[i].orbit != v) {
       s.exempt_link = s.exempt_link || exempt;
       continue;
     }
     s.own = static_cast<std::uint8_t>(s.own | 1U << i);
-    if (s.c[i].k == 0) s.apex = static_cast<std::uint8_t>(i);
+    if (s.c[i].exponent == 0) s.apex = static_cast<std::uint8_t>(i);
   }
   const auto& f = kFaceCorners[s.apex];
   s.link = LinkFace(s.p[f[0]], s.p[f[1]], s.p[f[2]]);
@@ -82,7 +82,7 @@ Surgery::Worth Surgery::star_worth_at(Point3 p, const Worth& limits) {
       // Other copies of the vertex move as well.
       auto x = s.p;
       for (std::uint32_t i = 0; i < 4; ++i) {
-        if ((s.own >> i & 1) != 0) x[i] = mesh_.rotations().rotate(p, s.c[i].k);
+        if ((s.own >> i & 1) != 0) x[i] = mesh_.rotations().rotate(p, s.c[i].exponent);
       }
       const auto& f = kFaceCorners[s.apex];
       turned = LinkFace(x[f[0]], x[f[1]], x[f[2]]);
@@ -107,7 +107,7 @@ std::span<const Surgery::Neighbour> Surgery::neighbours(VertexId v) {
   const Point3 x = mesh_.point(v);
   for (const StarTet& s : star_tets()) {
     for (std::uint32_t i = 0; i < 4; ++i) {
-      if (s.c[i].v == v) continue;
+      if (s.c[i].orbit == v) continue;
       const bool known = std::any_of(neighbours_.begin(), neighbours_.end(),
                                      [&](const Neighbour& n) { return n.corner == s.c[i]; });
       if (!known) neighbours_.push_back({squared_distance(x, s.p[i]), s.c[i]});
@@ -115,7 +115,7 @@ std::span<const Surgery::Neighbour> Surgery::neighbours(VertexId v) {
   }
   std::sort(neighbours_.begin(), neighbours_.end(), [](const Neighbour& a, const Neighbour& b) {
     if (a.squared != b.squared) return a.squared < b.squared;
-    return a.corner.v != b.corner.v ? a.corner.v < b.corner.v : a.corner.k < b.corner.k;
+    return a.corner.orbit != b.corner.orbit ? a.corner.orbit < b.corner.orbit : a.corner.exponent < b.corner.exponent;
   });
   return neighbours_;
 }

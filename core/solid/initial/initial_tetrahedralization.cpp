@@ -74,7 +74,7 @@ class Gluer {
       }
     }
     for (const SectorFace& f : sector_.faces) {
-      for (const std::int32_t v : f.orbit) facet_[at(sector_.vertices[at(v)].orbit)] = f.facet;
+      for (const std::int32_t v : f.v) facet_[at(sector_.vertices[at(v)].orbit)] = f.facet;
     }
   }
 
@@ -130,7 +130,7 @@ class Gluer {
   void release_unused_vertices() {
     std::vector<bool> used(result_.mesh.vertex_slots(), false);
     for (TetId t = 0; t < result_.mesh.tet_slots(); ++t) {
-      for (const VertexId v : result_.mesh.tet(t).orbit) used[at(v)] = true;
+      for (const VertexId v : result_.mesh.tet(t).v) used[at(v)] = true;
     }
     for (std::size_t v = 0; v < used.size(); ++v) {
       if (!used[v]) result_.mesh.release_vertex(static_cast<VertexId>(v));

@@ -21,10 +21,10 @@ namespace symcell::solid {
 
 namespace internal {
 
-inline constexpr double kLiftOrientation3Radius = 32.0 * kUnitRoundoff;
-inline constexpr double kLiftOrientation3Length = 12.0 * kUnitRoundoff;
-inline constexpr double kLiftInSphereRadius = 256.0 * kUnitRoundoff;
-inline constexpr double kLiftInSphereLength = 96.0 * kUnitRoundoff;
+inline constexpr double kLiftOrientation3Radius = 32.0 * symcell::internal::kUnitRoundoff;
+inline constexpr double kLiftOrientation3Length = 12.0 * symcell::internal::kUnitRoundoff;
+inline constexpr double kLiftInSphereRadius = 256.0 * symcell::internal::kUnitRoundoff;
+inline constexpr double kLiftInSphereLength = 96.0 * symcell::internal::kUnitRoundoff;
 
 struct LiftedExtent {
   double radius = 0;  // bound on the distance from the axis
@@ -53,7 +53,7 @@ template <class... Corners>
     if (mesh.on_axis(c.orbit)) return;
     if (k < 0) {
       k = c.exponent;
-    } else if (k != c.k) {
+    } else if (k != c.exponent) {
       same = false;
     }
   };
@@ -71,7 +71,7 @@ template <class... Corners>
   const double bound = size.length * size.length *
                        (internal::kLiftOrientation3Radius * size.radius +
                         internal::kLiftOrientation3Length * size.length);
-  return internal::decide(-internal::orientation_3_determinant(a, b, c, d).value, slack * bound);
+  return symcell::internal::decide(-symcell::internal::orientation_3_determinant(a, b, c, d).value, slack * bound);
 }
 
 [[nodiscard]] inline Sign certain_in_sphere(
@@ -81,7 +81,7 @@ template <class... Corners>
   const double bound =
       square * square *
       (internal::kLiftInSphereRadius * size.radius + internal::kLiftInSphereLength * size.length);
-  return internal::decide(-internal::in_sphere_determinant(a, b, c, d, e).value, slack * bound);
+  return symcell::internal::decide(-symcell::internal::in_sphere_determinant(a, b, c, d, e).value, slack * bound);
 }
 
 [[nodiscard]] inline Sign orientation_3(const QuotientTetrahedralization& mesh,

@@ -90,7 +90,7 @@ std::span<const TetId> QuotientTetrahedralization::tets_at_pinch(VertexId v) con
   list.erase(std::unique(list.begin(), list.end()), list.end());
   std::erase_if(list, [&](TetId t) {
     return t >= tets_.size() || !alive(t) ||
-           std::find(tets_[t].orbit, tets_[t].v + 4, v) == tets_[t].v + 4;
+           std::find(tets_[t].v, tets_[t].v + 4, v) == tets_[t].v + 4;
   });
   return list;
 }

@@ -184,7 +184,7 @@ class Checker {
       if (used[i] == 0) continue;
       const TetId at = mesh_.tet_at(v);
       if (at >= mesh_.tet_slots() || !mesh_.alive(at) ||
-          std::find(mesh_.tet(at).orbit, mesh_.tet(at).v + 4, v) == mesh_.tet(at).v + 4) {
+          std::find(mesh_.tet(at).v, mesh_.tet(at).v + 4, v) == mesh_.tet(at).v + 4) {
         return broken_vertex(v, "its tetrahedron does not have it as a corner");
       }
       const VertexKind kind = mesh_.kind(v);

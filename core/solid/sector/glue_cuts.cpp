@@ -106,7 +106,7 @@ class Gluer {
   }
 
   void index_boundary() {
-    const std::vector<EdgeUse> uses = sorted_edge_uses(patch_.triangles);
+    const std::vector<EdgeUse> uses = symcell::sorted_edge_uses(patch_.triangles);
     for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
       if (end - begin == 1) {
         boundary_[{uses[begin].low, uses[begin].high}] = uses[begin].triangle;

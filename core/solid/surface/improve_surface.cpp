@@ -244,7 +244,7 @@ class Improver {
   }
 
   [[nodiscard]] bool keeps_plane(const PlannedTriangle& p) const {
-    return symcell::keeps_plane(mesh_, p, kPlaneRounding * extent_);
+    return symcell::solid::keeps_plane(mesh_, p, kPlaneRounding * extent_);
   }
 
   struct Side {

@@ -138,7 +138,7 @@ TEST(RandomLayers, SurfacesAreClosedAndAsTold) {
     const auto model = test::make_random_layer_surface(seed, options);
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + model.description);
     const IndexedSurface s = welded(model.surface);
-    const auto uses = solid::sorted_edge_uses(s.triangles);
+    const auto uses = sorted_edge_uses(s.triangles);
     for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
       EXPECT_EQ(end - begin, 2u);
       EXPECT_NE(uses[begin].forward, uses[end - 1].forward);

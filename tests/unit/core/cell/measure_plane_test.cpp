@@ -9,7 +9,7 @@
 namespace symcell {
 namespace {
 
-SymmetryCellMesh cell_of(const test::QuotientSample& sample) {
+SymmetryCellMesh cell_of(const plane::test::QuotientSample& sample) {
   const auto cut = plane::cut_cell(sample.start.mesh);
   EXPECT_TRUE(cut) << cut.error().message;
   return plane::build_cell_mesh(sample.start, cut.value(), sample.pslg);
@@ -17,7 +17,7 @@ SymmetryCellMesh cell_of(const test::QuotientSample& sample) {
 
 TEST(MeasureCell, OneEquilateralTriangleASector) {
   Statistics s;
-  measure_cell_2(cell_of(test::wheel(6, false)), s);
+  measure_cell_2(cell_of(plane::test::wheel(6, false)), s);
   EXPECT_EQ(s.cell.elements, 1U);
   EXPECT_EQ(s.cell.nodes, 3U);
   EXPECT_EQ(s.cell.symmetry_nodes, 2U);  // the centre and the lower rim vertex
@@ -36,7 +36,7 @@ TEST(MeasureCell, FiguresAreThoseOfTheElements) {
   for (const std::int32_t fold : {1, 3, 10}) {
     for (std::uint64_t seed = 0; seed < 8; ++seed) {
       SCOPED_TRACE("fold " + std::to_string(fold) + " seed " + std::to_string(seed));
-      const SymmetryCellMesh cell = cell_of(test::random_sample(seed, fold));
+      const SymmetryCellMesh cell = cell_of(plane::test::random_sample(seed, fold));
       const FullMeshView full(cell);
       Statistics s;
       measure_cell_2(cell, s);

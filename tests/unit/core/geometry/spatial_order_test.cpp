@@ -41,14 +41,14 @@ TEST(SpatialOrder, CutsOffWhatIsBeyondTheCube) {
 // Compacting changes names, nothing else; copies in other frames come to lie beside each other.
 TEST(SpatialOrder, CompactedMeshesStayWhatTheyWere) {
   for (const std::int32_t fold : {1, 2, 6, 64}) {
-    auto solid = test::prism(test::prism_shape(fold));
-    const double volume = test::quotient_volume(solid.mesh);
+    auto solid = test::prism(solid::test::prism_shape(fold));
+    const double volume = solid::test::quotient_volume(solid.mesh);
     const std::size_t count = solid.mesh.tet_count();
     test::shuffle_gauge(solid.mesh, 7);
     solid.mesh.compact_tets();
     EXPECT_EQ(solid.mesh.tet_count(), count);
     EXPECT_EQ(solid.mesh.tet_slots(), count);
-    EXPECT_TRUE(test::is_valid(solid.mesh, volume));
+    EXPECT_TRUE(solid::test::is_valid(solid.mesh, volume));
   }
 }
 

@@ -43,7 +43,7 @@ class FacetCoverSample : public testing::TestWithParam<Case> {
   }
 
   static test::PrismShape shape() {
-    test::PrismShape s = test::prism_shape(GetParam().fold, GetParam().bore ? 0.7 : 0);
+    test::PrismShape s = solid::test::prism_shape(GetParam().fold, GetParam().bore ? 0.7 : 0);
     s.inner_facet = true;
     s.swirl = 0.1;
     return s;
@@ -122,28 +122,28 @@ TEST_P(FacetCoverSample, TheGaugeChangesNothing) {
 
 TEST_P(FacetCoverSample, LegalEditsChangeNothing) {
   int facets = 0, edges = 0, inside = 0;
-  for (const solid::TetId t : test::live_tets(mesh())) {
+  for (const solid::TetId t : solid::test::live_tets(mesh())) {
     for (std::uint32_t f = 0; f < 4 && mesh().alive(t); ++f) {
       if (mesh().tet(t).facet[f] == solid::kNoFacet) continue;
-      const auto [where, p] = test::middle_of_face(mesh(), t, f);
-      facets += test::insert_point(editor_, where, p) != solid::Editor::kNoVertex ? 1 : 0;
+      const auto [where, p] = solid::test::middle_of_face(mesh(), t, f);
+      facets += solid::test::insert_point(editor_, where, p) != solid::Editor::kNoVertex ? 1 : 0;
       expect_covered();
     }
   }
-  for (const solid::TetId t : test::live_tets(mesh())) {
+  for (const solid::TetId t : solid::test::live_tets(mesh())) {
     for (std::size_t e = 0; e < 6 && mesh().alive(t); e += 2) {
-      const auto [where, p] = test::middle_of_edge(mesh(), t, e);
-      edges += test::insert_point(editor_, where, p) != solid::Editor::kNoVertex ? 1 : 0;
+      const auto [where, p] = solid::test::middle_of_edge(mesh(), t, e);
+      edges += solid::test::insert_point(editor_, where, p) != solid::Editor::kNoVertex ? 1 : 0;
     }
     if (HasFailure()) return;
   }
   expect_covered();
-  for (const solid::TetId t : test::live_tets(mesh())) {
+  for (const solid::TetId t : solid::test::live_tets(mesh())) {
     if (!mesh().alive(t)) continue;
     const auto x = editor_.points({t, 0});
     const Point3 p = 0.25 * (x[0] + x[1] + x[2] + x[3]);
     const solid::Location where{solid::Location::Kind::kInside, {t, 0}, 0, {}};
-    inside += test::insert_point(editor_, where, p) != solid::Editor::kNoVertex ? 1 : 0;
+    inside += solid::test::insert_point(editor_, where, p) != solid::Editor::kNoVertex ? 1 : 0;
   }
   test::random_flips(mesh(), 200, 7);
   expect_covered();

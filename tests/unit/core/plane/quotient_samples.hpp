@@ -15,6 +15,7 @@
 
 namespace symcell::plane::test {
 
+
 struct QuotientSample {
   SymmetricPslg pslg;
   InitialTriangulation start;

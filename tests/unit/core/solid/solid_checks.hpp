@@ -16,6 +16,8 @@
 
 namespace symcell::solid::test {
 
+using namespace symcell::test;  // what all tests share
+
 inline double quotient_volume(const QuotientTetrahedralization& mesh) {
   double sum = 0;
   for (TetId t = 0; t < mesh.tet_slots(); ++t) {

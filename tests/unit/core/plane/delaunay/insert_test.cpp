@@ -138,7 +138,7 @@ TEST(DelaunayEditor, PointsNearTheCentreFallBackToFlips) {
       for (int i = 0; i < 30; ++i) {
         TriangleId t = dice.triangle(mesh);
         for (const TriangleId u : test::live_triangles(mesh)) {
-          for (const VertexId v : mesh.triangle(u).orbit) t = v == mesh.centre() ? u : t;
+          for (const VertexId v : mesh.triangle(u).v) t = v == mesh.centre() ? u : t;
         }
         placed += insert_in(editor, t, dice.point_in(mesh, t)) >= 0 ? 1 : 0;
         const auto ok = validate(mesh, ValidationLevel::kDelaunay);

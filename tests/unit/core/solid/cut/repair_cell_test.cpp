@@ -116,7 +116,7 @@ TEST_F(RepairCell, SeveralPatchesAtAVertex) {
     for (const TetCopy& b : star) {
       int shared = 0;
       for (const VertexId x : mesh().tet(a.t).v) {
-        shared += static_cast<int>(std::count(mesh().tet(b.t).orbit, mesh().tet(b.t).v + 4, x));
+        shared += static_cast<int>(std::count(mesh().tet(b.t).v, mesh().tet(b.t).v + 4, x));
       }
       if (shared != 1) continue;
       cell().move(a.t, 1);
