@@ -1,20 +1,14 @@
 #include "core/mesh_model.hpp"
 
-#include <chrono>
 #include <memory>
 #include <utility>
 
+#include "core/base/stopwatch.hpp"
 #include "core/plane/input/validate_pslg.hpp"
 #include "core/solid/mesh_solid.hpp"
 
 namespace symcell {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 void record(const solid::SectorSource& source, Statistics& statistics) {
   const solid::Symmetry& found = source.symmetry();
@@ -32,23 +26,23 @@ template <class Symmetrise>
 Result<MeshOutcome> mesh_with(const Symmetrise& symmetrise,
                               const MeshOptions& options,
                               ExecutionContext& context) {
-  const Clock::time_point start = Clock::now();
+  Stopwatch total, watch;
   context.report(Phase::kSymmetry, 0.02);
   const Result<std::unique_ptr<solid::SectorSource>> source = symmetrise();
-  if (!source) return tl::unexpected(source.error());
-  const double symmetry_ms = milliseconds_since(start);
+  if (!source) return error_of(source);
+  const double symmetry_ms = watch.lap();
   Result<MeshOutcome> outcome = solid::mesh_solid(**source, options, context);
   if (!outcome) return outcome;
   Statistics& statistics = outcome->statistics;
   record(**source, statistics);
   statistics.timings_ms.symmetry += symmetry_ms;
-  statistics.timings_ms.total = milliseconds_since(start);
+  statistics.timings_ms.total = total.lap();
   return outcome;
 }
 
 template <class Found>
 Result<Inspection> widened(Result<Found> found) {
-  if (!found) return tl::unexpected(found.error());
+  if (!found) return error_of(found);
   return Inspection(std::move(*found));
 }
 
@@ -72,9 +66,7 @@ Result<Inspection> inspect_model(const Model& model,
                                  const MeshOptions& options,
                                  ExecutionContext& context) {
   if (const auto* pslg = std::get_if<Pslg>(&model)) {
-    if (const auto valid = plane::validate_pslg(*pslg, context); !valid) {
-      return tl::unexpected(valid.error());
-    }
+    SYMCELL_TRY(plane::validate_pslg(*pslg, context));
     return widened(plane::inspect_pslg(*pslg, options, context));
   }
   if (const auto* plc = std::get_if<Plc>(&model)) {

@@ -151,13 +151,13 @@ Result<void> write_cell_archive(const SymmetryCellMesh& cell, const Sink& sink) 
 
 Result<std::int32_t> cell_archive_dimension(std::string_view bytes) {
   const Result<Header> header = read_header(bytes);
-  if (!header) return tl::unexpected(header.error());
+  if (!header) return error_of(header);
   return header->whole[0];
 }
 
 Result<SymmetryCellMesh> read_cell_archive(std::string_view bytes) {
   const Result<Header> header = read_header(bytes);
-  if (!header) return tl::unexpected(header.error());
+  if (!header) return error_of(header);
   std::array<std::uint64_t, kArrays> sizes{};
   std::memcpy(&sizes, bytes.data() + kHeaderBytes - sizeof sizes, sizeof sizes);
   // The sizes must make up the file exactly; no size is trusted before that.

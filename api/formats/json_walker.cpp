@@ -42,8 +42,8 @@ class CountingIterator {
 Result<void> JsonWalker::walk() {
   nlohmann::json::sax_parse(CountingIterator(bytes_.data(), &position_),
                             CountingIterator(bytes_.data() + bytes_.size(), &position_), this);
-  if (fatal_) return tl::unexpected(*fatal_);
-  if (error_) return tl::unexpected(*error_);
+  if (fatal_) return fail(*fatal_);
+  if (error_) return fail(*error_);
   return {};
 }
 

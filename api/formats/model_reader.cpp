@@ -66,7 +66,7 @@ std::optional<ModelFormat> guessed_format(std::string_view text) {
   return std::nullopt;
 }
 
-tl::unexpected<Error> unknown_format(std::string_view text) {
+Failure unknown_format(std::string_view text) {
   const std::string head = lower(text.substr(0, 16));
   if (head.starts_with("iso-10303")) {
     return fail(ErrorCode::kUnsupportedModel,
@@ -83,7 +83,7 @@ tl::unexpected<Error> unknown_format(std::string_view text) {
 
 template <class Read>
 Result<Model> widened(Result<Read> model) {
-  if (!model) return tl::unexpected(model.error());
+  if (!model) return error_of(model);
   return Model(std::move(*model));
 }
 
@@ -109,7 +109,7 @@ Result<Model> read_model(std::string_view bytes,
                          ModelFormat* recognised) {
   if (is_gzip(bytes)) {
     const Result<std::string> text = gunzip(bytes, kMaxModelBytes);
-    if (!text) return tl::unexpected(text.error());
+    if (!text) return error_of(text);
     // Packed twice is no model: the reader below says so.
     if (!is_gzip(*text)) return read_model(*text, format, recognised);
   }

@@ -30,7 +30,7 @@ class ObjReader {
       } else if (keyword == "f" || keyword == "fo") {
         done = read_face();
       }
-      if (!done) return tl::unexpected(done.error());
+      if (!done) return error_of(done);
     }
     return internal::finished(std::move(surface_), "OBJ");
   }
@@ -39,9 +39,9 @@ class ObjReader {
   [[nodiscard]] std::string place() const {
     return "line " + std::to_string(lines_.number()) + ": ";
   }
-  [[nodiscard]] tl::unexpected<Error> complain(ErrorCode code,
-                                               const std::string& what,
-                                               std::string pointer = {}) const {
+  [[nodiscard]] Failure complain(ErrorCode code,
+                                 const std::string& what,
+                                 std::string pointer = {}) const {
     return fail(code, place() + what, {}, std::move(pointer));
   }
 

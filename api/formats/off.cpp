@@ -28,7 +28,7 @@ class OffReader {
       done = complain(ErrorCode::kCountMismatch,
                       "the file goes on after its last face; are the counts right?");
     }
-    if (!done) return tl::unexpected(done.error());
+    if (!done) return error_of(done);
     return internal::finished(std::move(surface_), "OFF");
   }
 
@@ -36,9 +36,9 @@ class OffReader {
   [[nodiscard]] std::string place() const {
     return "line " + std::to_string(lines_.number()) + ": ";
   }
-  [[nodiscard]] tl::unexpected<Error> complain(ErrorCode code,
-                                               const std::string& what,
-                                               std::string pointer = {}) const {
+  [[nodiscard]] Failure complain(ErrorCode code,
+                                 const std::string& what,
+                                 std::string pointer = {}) const {
     return fail(code, place() + what, {}, std::move(pointer));
   }
 
@@ -76,9 +76,9 @@ class OffReader {
       }
     }
     const auto vertices = as_count(token, "vertices");
-    if (!vertices) return tl::unexpected(vertices.error());
+    if (!vertices) return error_of(vertices);
     const auto faces = as_count(lines_.next_token(), "faces");
-    if (!faces) return tl::unexpected(faces.error());
+    if (!faces) return error_of(faces);
     vertices_ = *vertices;
     faces_ = *faces;
     return {};
@@ -93,7 +93,7 @@ class OffReader {
 
   Result<void> read_vertices() {
     for (std::size_t i = 0; i < vertices_; ++i) {
-      if (auto done = next_entry("vertex", i, vertices_); !done) return done;
+      SYMCELL_TRY(next_entry("vertex", i, vertices_));
       double values[3] = {};
       for (double& value : values) {
         const std::string_view token = lines_.next_token();
@@ -116,9 +116,9 @@ class OffReader {
   Result<void> read_faces() {
     std::vector<std::int64_t> corners;
     for (std::size_t i = 0; i < faces_; ++i) {
-      if (auto done = next_entry("face", i, faces_); !done) return done;
+      SYMCELL_TRY(next_entry("face", i, faces_));
       const auto count = as_count(lines_.next_token(), "corners");
-      if (!count) return tl::unexpected(count.error());
+      if (!count) return error_of(count);
       corners.clear();
       for (std::size_t c = 0; c < *count; ++c) {
         const std::string_view token = lines_.next_token();

@@ -57,7 +57,7 @@ class PlcReader final : public internal::JsonWalker {
   using JsonWalker::JsonWalker;
 
   Result<Plc> read() {
-    if (const auto walked = walk(); !walked) return tl::unexpected(walked.error());
+    SYMCELL_TRY(walk());
     return std::move(plc_);
   }
 

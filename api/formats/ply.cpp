@@ -103,7 +103,7 @@ class PlyReader {
       } else {
         done = skip(element);
       }
-      if (!done) return tl::unexpected(done.error());
+      if (!done) return error_of(done);
     }
     if (!vertices || !faces) {
       return fail(ErrorCode::kMissingField, std::string("the PLY file has no element \"") +
@@ -114,7 +114,7 @@ class PlyReader {
       return fail(ErrorCode::kCountMismatch,
                   "the PLY file goes on after its last element; are the counts right?");
     }
-    if (auto done = append_faces(); !done) return tl::unexpected(done.error());
+    SYMCELL_TRY(append_faces());
     return internal::finished(std::move(surface_), "PLY");
   }
 
@@ -130,7 +130,7 @@ class PlyReader {
            std::to_string(place.element.count);
   }
 
-  [[nodiscard]] tl::unexpected<Error> no_number(const Place& place) const {
+  [[nodiscard]] Failure no_number(const Place& place) const {
     if (body_.word().empty()) {
       return fail(ErrorCode::kTruncated, "the PLY file ends in " + name_of(place));
     }
@@ -146,7 +146,7 @@ class PlyReader {
 
   Result<std::uint64_t> list_length(const PlyProperty& property, const Place& place) {
     const Result<double> count = number(property.count_type, place);
-    if (!count) return tl::unexpected(count.error());
+    if (!count) return error_of(count);
     if (*count >= 0 && *count <= 0x1p32 && std::floor(*count) == *count) {
       return static_cast<std::uint64_t>(*count);
     }
@@ -158,13 +158,11 @@ class PlyReader {
     std::uint64_t count = 1;
     if (property.list) {
       const auto length = list_length(property, place);
-      if (!length) return tl::unexpected(length.error());
+      if (!length) return error_of(length);
       count = *length;
     }
     for (std::uint64_t i = 0; i < count; ++i) {
-      if (const auto value = number(property.type, place); !value) {
-        return tl::unexpected(value.error());
-      }
+      SYMCELL_TRY(number(property.type, place));
     }
     return {};
   }
@@ -197,11 +195,11 @@ class PlyReader {
       for (const PlyProperty& property : element.properties) {
         const auto* axis = property.list ? kNames.end() : std::ranges::find(kNames, property.name);
         if (axis == kNames.end()) {
-          if (auto done = skip(property, place); !done) return done;
+          SYMCELL_TRY(skip(property, place));
           continue;
         }
         const Result<double> value = number(property.type, place);
-        if (!value) return tl::unexpected(value.error());
+        if (!value) return error_of(value);
         if (!std::isfinite(*value)) {
           return fail(ErrorCode::kNonFinite,
                       "PLY: " + name_of(place) + " has a coordinate that is not finite",
@@ -235,10 +233,10 @@ class PlyReader {
 
   Result<void> read_corners(const PlyProperty& property, const Place& place) {
     const auto length = list_length(property, place);
-    if (!length) return tl::unexpected(length.error());
+    if (!length) return error_of(length);
     for (std::uint64_t c = 0; c < *length; ++c) {
       const Result<double> corner = number(property.type, place);
-      if (!corner) return tl::unexpected(corner.error());
+      if (!corner) return error_of(corner);
       if (std::floor(*corner) != *corner || std::abs(*corner) > 0x1p53) {
         return fail(ErrorCode::kSyntax, "PLY: " + name_of(place) + " has a corner that is no index",
                     {static_cast<std::int64_t>(place.index)});
@@ -252,7 +250,7 @@ class PlyReader {
     std::size_t begin = 0;
     for (std::size_t f = 0; f < face_ends_.size(); ++f) {
       const std::span<const std::int64_t> corners(corners_.data() + begin, face_ends_[f] - begin);
-      if (auto done = internal::append_face(corners, f, "PLY: ", surface_); !done) return done;
+      SYMCELL_TRY(internal::append_face(corners, f, "PLY: ", surface_));
       begin = face_ends_[f];
     }
     return {};
@@ -269,7 +267,7 @@ class PlyReader {
 
 Result<TriangleSurface> read_ply(std::string_view bytes) {
   const Result<PlyHeader> header = internal::read_ply_header(bytes);
-  if (!header) return tl::unexpected(header.error());
+  if (!header) return error_of(header);
   return PlyReader(*header).read();
 }
 

@@ -63,7 +63,7 @@ class HeaderReader {
         header_.body = rest_;
         return std::move(header_);
       }
-      if (auto done = take(words); !done) return tl::unexpected(done.error());
+      SYMCELL_TRY(take(words));
     }
     return complain(ErrorCode::kTruncated, "the file ends before \"end_header\"");
   }
@@ -80,11 +80,10 @@ class HeaderReader {
     return true;
   }
 
-  [[nodiscard]] tl::unexpected<Error> complain(ErrorCode code, const std::string& what) const {
+  [[nodiscard]] Failure complain(ErrorCode code, const std::string& what) const {
     return fail(code, "line " + std::to_string(line_) + ": " + what);
   }
-  [[nodiscard]] tl::unexpected<Error> not_understood(
-      const std::vector<std::string_view>& words) const {
+  [[nodiscard]] Failure not_understood(const std::vector<std::string_view>& words) const {
     return complain(ErrorCode::kSyntax, "a line that begins with \"" + printable(words[0]) +
                                             "\" is not understood in the header of a PLY file");
   }
@@ -149,10 +148,10 @@ class HeaderReader {
     return {};
   }
 
-  [[nodiscard]] tl::unexpected<Error> unknown_type(std::string_view word) const {
+  [[nodiscard]] Failure unknown_type(std::string_view word) const {
     return complain(ErrorCode::kSyntax, "\"" + printable(word) + "\" is no type that fits here");
   }
-  [[nodiscard]] tl::unexpected<Error> too_long() const {
+  [[nodiscard]] Failure too_long() const {
     return complain(
         ErrorCode::kTooLarge,
         "the header has more than " + std::to_string(kMostProperties) + " elements and properties");

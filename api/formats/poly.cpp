@@ -32,7 +32,7 @@ class PolyReader {
       done = complain(ErrorCode::kCountMismatch,
                       "the file goes on after its last section; are the counts right?");
     }
-    if (!done) return tl::unexpected(done.error());
+    if (!done) return error_of(done);
     return std::move(pslg_);
   }
 
@@ -48,9 +48,7 @@ class PolyReader {
     return true;
   }
 
-  tl::unexpected<Error> complain(ErrorCode code,
-                                 const std::string& what,
-                                 std::string pointer = {}) {
+  Failure complain(ErrorCode code, const std::string& what, std::string pointer = {}) {
     return fail(code, "line " + std::to_string(lines_.number()) + ": " + what, {},
                 std::move(pointer));
   }
@@ -123,9 +121,9 @@ class PolyReader {
 
   Result<Point2> point(std::size_t token, const std::string& pointer) {
     const Result<double> x = real(token, pointer + "/0");
-    if (!x) return tl::unexpected(x.error());
+    if (!x) return error_of(x);
     const Result<double> y = real(token + 1, pointer + "/1");
-    if (!y) return tl::unexpected(y.error());
+    if (!y) return error_of(y);
     return Point2{*x, *y};
   }
 
@@ -144,7 +142,7 @@ class PolyReader {
   // Markers and attributes: whole numbers, also as 2.0.
   Result<std::int32_t> label(std::size_t token, const std::string& pointer) {
     const Result<double> number = real(token, pointer);
-    if (!number) return tl::unexpected(number.error());
+    if (!number) return error_of(number);
     const std::optional<std::int32_t> whole = whole_int32(*number);
     if (!whole) {
       return complain(ErrorCode::kSyntax,
@@ -157,7 +155,7 @@ class PolyReader {
 
   Result<void> read_vertices() {
     const auto count = read_count("vertices", true);
-    if (!count) return tl::unexpected(count.error());
+    if (!count) return error_of(count);
     const std::size_t total = **count;
     if (total == 0) {
       return complain(ErrorCode::kMissingField,
@@ -179,7 +177,7 @@ class PolyReader {
       const auto entry = read_entry("vertex", i, total, 3);
       if (!entry) return entry;
       const Result<Point2> p = point(1, "/vertices/" + std::to_string(i));
-      if (!p) return tl::unexpected(p.error());
+      if (!p) return error_of(p);
       pslg_.vertices.push_back(*p);
     }
     first_vertex_ = section_first_;
@@ -188,19 +186,19 @@ class PolyReader {
 
   Result<void> read_segments() {
     const auto count = read_count("segments", true);
-    if (!count) return tl::unexpected(count.error());
+    if (!count) return error_of(count);
     const bool marked = line_.count > 1 && line_.tokens[1] != "0";
     for (std::size_t i = 0; i < **count; ++i) {
       const auto entry = read_entry("segment", i, **count, marked ? 4 : 3);
       if (!entry) return entry;
       const std::string pointer = "/segments/" + std::to_string(i);
       const Result<std::int32_t> a = index(1, pointer + "/0");
-      if (!a) return tl::unexpected(a.error());
+      if (!a) return error_of(a);
       const Result<std::int32_t> b = index(2, pointer + "/1");
-      if (!b) return tl::unexpected(b.error());
+      if (!b) return error_of(b);
       Result<std::int32_t> marker = 0;
       if (marked) marker = label(3, pointer + "/2");
-      if (!marker) return tl::unexpected(marker.error());
+      if (!marker) return error_of(marker);
       pslg_.segments.push_back({*a, *b, *marker});
     }
     return {};
@@ -208,12 +206,12 @@ class PolyReader {
 
   Result<void> read_holes() {
     const auto count = read_count("holes", true);
-    if (!count) return tl::unexpected(count.error());
+    if (!count) return error_of(count);
     for (std::size_t i = 0; i < **count; ++i) {
       const auto entry = read_entry("hole", i, **count, 3);
       if (!entry) return entry;
       const Result<Point2> p = point(1, "/holes/" + std::to_string(i));
-      if (!p) return tl::unexpected(p.error());
+      if (!p) return error_of(p);
       pslg_.holes.push_back(*p);
     }
     return {};
@@ -221,20 +219,20 @@ class PolyReader {
 
   Result<void> read_regions() {
     const auto count = read_count("regions", false);
-    if (!count) return tl::unexpected(count.error());
+    if (!count) return error_of(count);
     if (!count->has_value()) return {};
     for (std::size_t i = 0; i < **count; ++i) {
       const auto entry = read_entry("region", i, **count, 4);
       if (!entry) return entry;
       const std::string pointer = "/regions/" + std::to_string(i);
       const Result<Point2> p = point(1, pointer + "/point");
-      if (!p) return tl::unexpected(p.error());
+      if (!p) return error_of(p);
       const Result<std::int32_t> attribute = label(3, pointer + "/attribute");
-      if (!attribute) return tl::unexpected(attribute.error());
+      if (!attribute) return error_of(attribute);
       PslgRegion region{*p, *attribute, std::numeric_limits<double>::infinity()};
       if (line_.count > 4) {
         const Result<double> area = real(4, pointer + "/max_area");
-        if (!area) return tl::unexpected(area.error());
+        if (!area) return error_of(area);
         if (*area > 0) region.max_area = *area;
       }
       pslg_.regions.push_back(region);

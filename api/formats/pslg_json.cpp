@@ -34,7 +34,7 @@ class PslgReader final : public internal::JsonWalker {
   using JsonWalker::JsonWalker;
 
   Result<Pslg> read() {
-    if (const auto walked = walk(); !walked) return tl::unexpected(walked.error());
+    SYMCELL_TRY(walk());
     return std::move(pslg_);
   }
 

@@ -42,7 +42,7 @@ bool is_text(std::string_view bytes) {
   });
 }
 
-tl::unexpected<Error> wrong_count(std::string_view bytes, ErrorCode code, const std::string& what) {
+Failure wrong_count(std::string_view bytes, ErrorCode code, const std::string& what) {
   return fail(code, "binary STL: the header says " + std::to_string(told_count(bytes)) +
                         " triangles, " + what + "; was the file written completely?");
 }

@@ -43,7 +43,7 @@ class AsciiStlReader {
                                                 (in_solid ? "facet\" or \"endsolid" : "solid") +
                                                 "\" should stand");
       }
-      if (!done) return tl::unexpected(done.error());
+      if (!done) return error_of(done);
     } while (next());
     if (in_solid) {
       return complain(ErrorCode::kTruncated, "the file ends without \"endsolid\", after triangle " +
@@ -87,7 +87,7 @@ class AsciiStlReader {
     return "triangle " + std::to_string(surface_.triangles.size());
   }
 
-  [[nodiscard]] tl::unexpected<Error> complain(ErrorCode code, const std::string& what) const {
+  [[nodiscard]] Failure complain(ErrorCode code, const std::string& what) const {
     const auto t = static_cast<std::int64_t>(surface_.triangles.size());
     return fail(code, "line " + std::to_string(line_) + ": " + what, {t},
                 "/triangles/" + std::to_string(t));
@@ -127,20 +127,20 @@ class AsciiStlReader {
   }
 
   Result<void> read_facet() {
-    if (auto done = skip_normal(); !done) return done;
+    SYMCELL_TRY(skip_normal());
     const auto first = static_cast<std::int32_t>(surface_.vertices.size());
     for (int v = 0; v < 3; ++v) {
-      if (auto done = expect("vertex"); !done) return done;
+      SYMCELL_TRY(expect("vertex"));
       double values[3] = {};
       for (double& value : values) {
         const Result<double> read = coordinate();
-        if (!read) return tl::unexpected(read.error());
+        if (!read) return error_of(read);
         value = *read;
       }
       surface_.vertices.push_back({values[0], values[1], values[2]});
     }
-    if (auto done = expect("endloop"); !done) return done;
-    if (auto done = expect("endfacet"); !done) return done;
+    SYMCELL_TRY(expect("endloop"));
+    SYMCELL_TRY(expect("endfacet"));
     if (surface_.triangles.size() == kMaxSurfaceTriangles) {
       return complain(ErrorCode::kTooLarge,
                       "more than " + std::to_string(kMaxSurfaceTriangles) + " triangles");

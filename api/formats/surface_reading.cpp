@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/solid/plc/polygon_triangles.hpp"
+#include "core/model/polygon_triangles.hpp"
 
 namespace symcell::internal {
 
@@ -33,7 +33,7 @@ Result<void> append_face(std::span<const std::int64_t> corners,
     }
     polygon.push_back(static_cast<std::int32_t>(corner));
   }
-  auto done = solid::append_polygon(polygon, static_cast<std::int32_t>(face), surface);
+  auto done = append_polygon(polygon, static_cast<std::int32_t>(face), surface);
   if (!done) done.error().message.insert(0, place);
   return done;
 }

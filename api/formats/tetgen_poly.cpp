@@ -28,7 +28,7 @@ class TetgenReader {
       done = complain(ErrorCode::kCountMismatch,
                       "the file goes on after its last section; are the counts right?");
     }
-    if (!done) return tl::unexpected(done.error());
+    if (!done) return error_of(done);
     return std::move(plc_);
   }
 
@@ -40,9 +40,9 @@ class TetgenReader {
     bool present = false;
   };
 
-  [[nodiscard]] tl::unexpected<Error> complain(ErrorCode code,
-                                               const std::string& what,
-                                               std::string pointer = {}) const {
+  [[nodiscard]] Failure complain(ErrorCode code,
+                                 const std::string& what,
+                                 std::string pointer = {}) const {
     return fail(code, "line " + std::to_string(lines_.number()) + ": " + what, {},
                 std::move(pointer));
   }
@@ -74,7 +74,7 @@ class TetgenReader {
                       "the file ends where the number of " + what + " should stand");
     }
     const Result<std::size_t> count = as_count(lines_.next_token(), what);
-    if (!count) return tl::unexpected(count.error());
+    if (!count) return error_of(count);
     return Header{*count, lines_.next_token(), true};
   }
 
@@ -114,7 +114,7 @@ class TetgenReader {
     double values[3] = {};
     for (int i = 0; i < 3; ++i) {
       const auto value = as_real(lines_.next_token(), pointer + "/" + std::to_string(i));
-      if (!value) return tl::unexpected(value.error());
+      if (!value) return error_of(value);
       values[i] = *value;
     }
     return Point3{values[0], values[1], values[2]};
@@ -124,7 +124,7 @@ class TetgenReader {
   [[nodiscard]] Result<std::int32_t> as_label(std::string_view token,
                                               const std::string& pointer) const {
     const Result<double> number = as_real(token, pointer);
-    if (!number) return tl::unexpected(number.error());
+    if (!number) return error_of(number);
     const std::optional<std::int32_t> whole = whole_int32(*number);
     if (whole) return *whole;
     return complain(ErrorCode::kSyntax,
@@ -149,7 +149,7 @@ class TetgenReader {
   // --- Sections. --------------------------------------------------------------------------------
   Result<void> read_vertices() {
     const Result<Header> header = read_header("vertices", true);
-    if (!header) return tl::unexpected(header.error());
+    if (!header) return error_of(header);
     if (header->count == 0) {
       return complain(ErrorCode::kMissingField,
                       "the vertices are in a separate .node file; put them into this file");
@@ -170,7 +170,7 @@ class TetgenReader {
       if (done) done = read_number("vertex", i, first_vertex_);
       if (!done) return done;
       const auto p = read_point("/vertices/" + std::to_string(i));
-      if (!p) return tl::unexpected(p.error());
+      if (!p) return error_of(p);
       plc_.vertices.push_back(*p);
     }
     return {};
@@ -178,7 +178,7 @@ class TetgenReader {
 
   Result<void> read_facets() {
     const Result<Header> header = read_header("facets", true);
-    if (!header) return tl::unexpected(header.error());
+    if (!header) return error_of(header);
     const bool marked = !header->second.empty() && header->second != "0";
     for (std::size_t i = 0; i < header->count; ++i) {
       auto done = next_entry("facet", i, header->count);
@@ -196,15 +196,15 @@ class TetgenReader {
   // "polygons [holes [marker]]", the polygons, the holes.
   Result<void> read_facet(PlcFacet& facet, bool marked, const std::string& pointer) {
     const auto polygons = as_count(lines_.next_token(), "polygons");
-    if (!polygons) return tl::unexpected(polygons.error());
+    if (!polygons) return error_of(polygons);
     std::size_t holes = 0;
     if (const std::string_view token = lines_.next_token(); !token.empty()) {
       const auto count = as_count(token, "holes of the facet");
-      if (!count) return tl::unexpected(count.error());
+      if (!count) return error_of(count);
       holes = *count;
       if (const std::string_view label = lines_.next_token(); marked && !label.empty()) {
         const auto marker = as_label(label, pointer + "/marker");
-        if (!marker) return tl::unexpected(marker.error());
+        if (!marker) return error_of(marker);
         facet.marker = *marker;
       }
     }
@@ -219,7 +219,7 @@ class TetgenReader {
       if (done) done = read_number("hole", i, first);
       if (!done) return done;
       const auto p = read_point(pointer + "/holes/" + std::to_string(i));
-      if (!p) return tl::unexpected(p.error());
+      if (!p) return error_of(p);
       facet.holes.push_back(*p);
     }
     return {};
@@ -231,7 +231,7 @@ class TetgenReader {
     const std::string_view token = lines_.next_token();
     if (token.empty()) return {};
     const auto marker = as_label(token, pointer + "/marker");
-    if (!marker) return tl::unexpected(marker.error());
+    if (!marker) return error_of(marker);
     facet.marker = *marker;
     return {};
   }
@@ -239,7 +239,7 @@ class TetgenReader {
   // "corners c1 c2 ...", also over several lines.
   Result<void> read_polygon(PlcFacet& facet, const std::string& pointer) {
     const auto count = as_count(lines_.next_token(), "corners of the polygon");
-    if (!count) return tl::unexpected(count.error());
+    if (!count) return error_of(count);
     corners_ += *count + 1;
     if (corners_ > kMaxPlcCorners) {
       return complain(ErrorCode::kTooLarge,
@@ -253,7 +253,7 @@ class TetgenReader {
                         "the file ends in a polygon of " + std::to_string(*count) + " corners");
       }
       const auto index = as_index(token, pointer + "/" + std::to_string(i));
-      if (!index) return tl::unexpected(index.error());
+      if (!index) return error_of(index);
       polygon.push_back(*index);
     }
     return {};
@@ -261,14 +261,14 @@ class TetgenReader {
 
   Result<void> read_holes() {
     const Result<Header> header = read_header("holes", true);
-    if (!header) return tl::unexpected(header.error());
+    if (!header) return error_of(header);
     std::int64_t first = 1;
     for (std::size_t i = 0; i < header->count; ++i) {
       auto done = next_entry("hole", i, header->count);
       if (done) done = read_number("hole", i, first);
       if (!done) return done;
       const auto p = read_point("/holes/" + std::to_string(i));
-      if (!p) return tl::unexpected(p.error());
+      if (!p) return error_of(p);
       plc_.holes.push_back(*p);
     }
     return {};
@@ -276,7 +276,7 @@ class TetgenReader {
 
   Result<void> read_regions() {
     const Result<Header> header = read_header("regions", false);
-    if (!header) return tl::unexpected(header.error());
+    if (!header) return error_of(header);
     std::int64_t first = 1;
     for (std::size_t i = 0; i < header->count; ++i) {
       auto done = next_entry("region", i, header->count);
@@ -284,13 +284,13 @@ class TetgenReader {
       if (!done) return done;
       const std::string pointer = "/regions/" + std::to_string(i);
       const auto p = read_point(pointer + "/point");
-      if (!p) return tl::unexpected(p.error());
+      if (!p) return error_of(p);
       const auto attribute = as_label(lines_.next_token(), pointer + "/attribute");
-      if (!attribute) return tl::unexpected(attribute.error());
+      if (!attribute) return error_of(attribute);
       PlcRegion region{*p, *attribute, std::numeric_limits<double>::infinity()};
       if (const std::string_view token = lines_.next_token(); !token.empty()) {
         const auto volume = as_real(token, pointer + "/max_volume");
-        if (!volume) return tl::unexpected(volume.error());
+        if (!volume) return error_of(volume);
         if (*volume > 0) region.max_volume = *volume;
       }
       plc_.regions.push_back(region);

@@ -242,7 +242,7 @@ Result<std::vector<T>> VtuArrays::read(const pugi::xml_node& array, std::uint64_
                                                "; appended raw and ascii are read");
   }
   const Result<std::string> bytes = payload(array, count * scalar->size);
-  if (!bytes) return tl::unexpected(bytes.error());
+  if (!bytes) return error_of(bytes);
   std::vector<T> values(static_cast<std::size_t>(count));
   convert(scalar->type, *bytes, values);
   return values;

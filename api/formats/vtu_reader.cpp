@@ -41,7 +41,7 @@ class VtuReader {
     if (done) done = read_points();
     if (done) done = read_cells();
     if (done) done = read_attributes();
-    if (!done) return tl::unexpected(done.error());
+    if (!done) return error_of(done);
     return std::move(mesh_);
   }
 
@@ -83,9 +83,9 @@ class VtuReader {
   }
 
   // Tells which array it was, if it was not there at all.
-  static tl::unexpected<Error> missing(Error error, const std::string& name) {
+  static Failure missing(Error error, const std::string& name) {
     if (error.code == ErrorCode::kMissingField) error.message = name + " is missing";
-    return tl::unexpected<Error>(std::move(error));
+    return fail(std::move(error));
   }
 
   Result<void> read_points() {
@@ -150,7 +150,7 @@ class VtuReader {
     const auto array = find_array(piece_.child(group), name);
     if (!array) return {};
     const auto values = arrays_.integers(array, count);
-    if (!values) return tl::unexpected(values.error());
+    if (!values) return error_of(values);
     target.resize(values->size());
     for (std::size_t i = 0; i < target.size(); ++i) {
       const std::int64_t value = (*values)[i];
@@ -224,7 +224,7 @@ Result<MeshData> read_vtu(std::string_view bytes) {
     return fail(ErrorCode::kUnknownFormat, "not a VTKFile of type UnstructuredGrid");
   }
   const Result<VtuArrays> arrays = VtuArrays::open(root, appended);
-  if (!arrays) return tl::unexpected(arrays.error());
+  if (!arrays) return error_of(arrays);
   return VtuReader(grid, *arrays).read();
 }
 

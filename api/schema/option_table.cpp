@@ -17,10 +17,10 @@ using Kind = OptionValue::Kind;
 constexpr double kMostCoordinate = 1e60;  // as for the vertices of a model
 constexpr unsigned kMegabyteBits = 20;
 
-tl::unexpected<Error> refuse(ErrorCode code,
-                             const OptionInfo& info,
-                             const OptionValue& value,
-                             const std::string& wanted) {
+Failure refuse(ErrorCode code,
+               const OptionInfo& info,
+               const OptionValue& value,
+               const std::string& wanted) {
   const std::string shown = printable(value.text);
   std::string name(info.name);
   return fail(code, name + " must be " + wanted + "; got " + (shown.empty() ? "nothing" : shown),
@@ -101,7 +101,7 @@ Result<double> in_range(const OptionInfo& info,
 Result<void> set_bound(const OptionInfo& info, const OptionValue& value, double& bound) {
   const Result<double> number =
       in_range(info, value, 0, false, 1e300, "a positive number; leave it out for no bound");
-  if (!number) return tl::unexpected(number.error());
+  if (!number) return error_of(number);
   bound = *number;
   return {};
 }
@@ -175,7 +175,7 @@ Result<void> set_symmetry_tolerance(const OptionInfo& info,
   const Result<double> number =
       in_range(info, value, 0, false, 0.1,
                "a number above 0, at most 0.1 (a share of the model's diameter)");
-  if (!number) return tl::unexpected(number.error());
+  if (!number) return error_of(number);
   options.symmetry_tolerance_rel = *number;
   return {};
 }
@@ -183,7 +183,7 @@ Result<void> set_symmetry_tolerance(const OptionInfo& info,
 Result<void> set_min_angle(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
   const Result<double> number =
       in_range(info, value, 0, true, kMaxMinAngleDeg, "a number of degrees from 0 to 42");
-  if (!number) return tl::unexpected(number.error());
+  if (!number) return error_of(number);
   options.min_angle_deg = *number;
   return {};
 }
@@ -193,7 +193,7 @@ Result<void> set_radius_edge(const OptionInfo& info,
                              MeshOptions& options) {
   const Result<double> number =
       in_range(info, value, 1, true, 100, "a number from 1 to 100 (circumradius / shortest edge)");
-  if (!number) return tl::unexpected(number.error());
+  if (!number) return error_of(number);
   options.radius_edge = *number;
   return {};
 }
@@ -203,7 +203,7 @@ Result<void> set_min_dihedral(const OptionInfo& info,
                               MeshOptions& options) {
   const Result<double> number =
       in_range(info, value, 0, true, 70, "a number of degrees from 0 to 70");
-  if (!number) return tl::unexpected(number.error());
+  if (!number) return error_of(number);
   options.min_dihedral_deg = *number;
   return {};
 }
@@ -243,7 +243,7 @@ Result<void> set_time_limit(const OptionInfo& info,
                             MeshOptions& options) {
   const Result<double> number = in_range(info, value, 0, false, 1e9,
                                          "a positive number of seconds; leave it out for no limit");
-  if (!number) return tl::unexpected(number.error());
+  if (!number) return error_of(number);
   options.time_limit_s = *number;
   return {};
 }

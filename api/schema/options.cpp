@@ -36,7 +36,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-tl::unexpected<Error> unknown_option(const std::string& name) {
+Failure unknown_option(const std::string& name) {
   const std::string shown = printable(name);
   std::string_view best;
   std::size_t best_distance = 4;
@@ -111,9 +111,7 @@ Result<MeshOptions> options_from_json(const nlohmann::json& object) {
     const OptionRow* row = find_row(name);
     if (row == nullptr) return unknown_option(name);
     if (json.is_null()) continue;
-    if (auto set = row->set(row->info, value_from_json(json), options); !set) {
-      return tl::unexpected(set.error());
-    }
+    SYMCELL_TRY(row->set(row->info, value_from_json(json), options));
   }
   return options;
 }
@@ -131,9 +129,7 @@ Result<MeshOptions> options_from_texts(
       return fail(ErrorCode::kBadOption, name + " is given twice; give it once", {},
                   "/options/" + name);
     }
-    if (auto set = row->set(row->info, value_from_text(text), options); !set) {
-      return tl::unexpected(set.error());
-    }
+    SYMCELL_TRY(row->set(row->info, value_from_text(text), options));
   }
   return options;
 }

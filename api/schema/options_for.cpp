@@ -7,7 +7,7 @@
 namespace symcell {
 namespace {
 
-tl::unexpected<Error> not_of_kind(ModelKind kind, const std::string& name) {
+Failure not_of_kind(ModelKind kind, const std::string& name) {
   const std::string message =
       is_planar(kind)
           ? " is for solid models; planar models take min_angle, max_area and max_edge"
@@ -15,7 +15,7 @@ tl::unexpected<Error> not_of_kind(ModelKind kind, const std::string& name) {
   return fail(ErrorCode::kBadOption, name + message, {}, "/options/" + name);
 }
 
-tl::unexpected<Error> bad_axis(const std::string& name, const std::string& message) {
+Failure bad_axis(const std::string& name, const std::string& message) {
   return fail(ErrorCode::kBadAxis, message, {}, "/options/" + name);
 }
 

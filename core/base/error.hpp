@@ -75,12 +75,30 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-[[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code,
-                                                std::string message,
-                                                std::vector<std::int64_t> elements = {},
-                                                std::string pointer = {}) {
-  return tl::unexpected<Error>(
-      Error{code, std::move(message), std::move(elements), std::move(pointer)});
+// What a function that returns a Result returns where it fails.
+using Failure = tl::unexpected<Error>;
+
+[[nodiscard]] inline Failure fail(Error error) {
+  return Failure(std::move(error));
 }
+[[nodiscard]] inline Failure fail(ErrorCode code,
+                                  std::string message,
+                                  std::vector<std::int64_t> elements = {},
+                                  std::string pointer = {}) {
+  return Failure(Error{code, std::move(message), std::move(elements), std::move(pointer)});
+}
+
+// The error of a failed result, to be returned as that of another type.
+template <class T>
+[[nodiscard]] Failure error_of(const Result<T>& failed) {
+  return Failure(failed.error());
+}
+
+// Returns the error of an expression that gives a Result, where it is one; goes on otherwise.
+#define SYMCELL_TRY(...)                            \
+  if (const auto tried_ = (__VA_ARGS__); !tried_) { \
+    return ::symcell::error_of(tried_);             \
+  } else /* so that the macro is one statement */   \
+    static_cast<void>(0)
 
 }  // namespace symcell

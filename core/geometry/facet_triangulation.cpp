@@ -28,7 +28,7 @@ using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
 using VertexHandle = Cdt::Vertex_handle;
 using FaceHandle = Cdt::Face_handle;
 
-tl::unexpected<Error> crossing(IndexPair edge) {
+Failure crossing(IndexPair edge) {
   return fail(ErrorCode::kSelfIntersection, "edges of a facet cross or touch in its plane",
               {edge[0], edge[1]});
 }
@@ -39,12 +39,12 @@ class Triangulator {
       : points_(points), graph_(graph) {}
 
   Result<FacetTriangles> run() {
-    if (auto ok = insert_vertices(); !ok) return tl::unexpected(ok.error());
+    SYMCELL_TRY(insert_vertices());
     if (cdt_.dimension() < 2) {
       return fail(ErrorCode::kDegenerateFacet, "a facet's vertices lie on one line");
     }
-    if (auto ok = insert_edges(graph_.segments); !ok) return tl::unexpected(ok.error());
-    if (auto ok = insert_edges(graph_.cuts); !ok) return tl::unexpected(ok.error());
+    SYMCELL_TRY(insert_edges(graph_.segments));
+    SYMCELL_TRY(insert_edges(graph_.cuts));
     return collect();
   }
 

@@ -16,8 +16,7 @@ FaceKey pack(const std::array<Named, 3>& c) {
   const auto u32 = [](std::int32_t i) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i));
   };
-  return {u32(c[0].v) << 32 | u32(c[1].v),
-          u32(c[2].v) << 32 | u32(c[1].k) << 16 | u32(c[2].k)};
+  return {u32(c[0].v) << 32 | u32(c[1].v), u32(c[2].v) << 32 | u32(c[1].k) << 16 | u32(c[2].k)};
 }
 
 bool less(const FaceKey& a, const FaceKey& b) {

@@ -20,8 +20,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/geometry/limits.hpp"
 #include "core/geometry/point.hpp"
-#include "core/model/limits.hpp"
 
 namespace symcell {
 

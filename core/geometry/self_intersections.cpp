@@ -112,7 +112,7 @@ Result<std::vector<std::pair<std::int32_t, std::int32_t>>> self_intersections(
     if (test.intersect(low, high)) pairs.emplace_back(low, high);
     return pairs.size() >= limit;
   });
-  if (!state) return tl::unexpected<Error>(state.error());
+  if (!state) return error_of(state);
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

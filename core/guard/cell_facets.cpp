@@ -159,7 +159,7 @@ std::string name_of(const Nodes& n) {
   return n[2] < 0 ? name : name + "-" + std::to_string(n[2]);
 }
 
-tl::unexpected<Error> broken(const std::string& what) {
+Failure broken(const std::string& what) {
   return fail(ErrorCode::kInternal, "mesh check 'cell': " + what);
 }
 

@@ -28,7 +28,7 @@ bool sort_nodes(Nodes& nodes, std::int32_t dimension);
 
 [[nodiscard]] std::string name_of(const Nodes& nodes);
 
-[[nodiscard]] tl::unexpected<Error> broken(const std::string& what);
+[[nodiscard]] Failure broken(const std::string& what);
 
 // Whether all elements at a node of the cell's surface, in space at an edge of it too, hang
 // together by facets. `marked`: the nodes of the surface.  `facets`: of elements, with a marked

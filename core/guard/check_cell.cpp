@@ -44,14 +44,14 @@ class CellChecker {
         corners_(static_cast<std::size_t>(cell.dimension) + 1) {}
 
   Result<void> run() {
-    if (auto ok = check_fields(); !ok) return ok;
-    if (auto ok = check_nodes(); !ok) return ok;
-    if (auto ok = check_orientation(); !ok) return ok;
+    SYMCELL_TRY(check_fields());
+    SYMCELL_TRY(check_nodes());
+    SYMCELL_TRY(check_orientation());
     mark_surface();
-    if (auto ok = gather_facets(); !ok) return ok;
-    if (auto ok = check_bounds(); !ok) return ok;
-    if (auto ok = check_outer(); !ok) return ok;
-    if (auto ok = check_boundary(); !ok) return ok;
+    SYMCELL_TRY(gather_facets());
+    SYMCELL_TRY(check_bounds());
+    SYMCELL_TRY(check_outer());
+    SYMCELL_TRY(check_boundary());
     return check_cell_links(cell_, marked_, facets_, inner_, pinched_);
   }
 

@@ -27,7 +27,7 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-tl::unexpected<Error> broken(const std::string& what) {
+Failure broken(const std::string& what) {
   return fail(ErrorCode::kInternal, "mesh check 'facets': " + what);
 }
 
@@ -38,7 +38,7 @@ class CoverMeter {
   Result<FacetCover> run() {
     add_lengths();
     add_areas();
-    if (auto ok = add_edges(); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(add_edges());
     auto& all = cover_.incidences;
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
@@ -109,9 +109,8 @@ class CoverMeter {
         const std::span<const OrbitEdgeUse> own(&uses[first], last - first);
         if (segment >= 0) {
           add_incidence(segment, own);
-        } else if (auto ok = check_inner(own); !ok) {
-          return ok;
-        }
+        } else
+          SYMCELL_TRY(check_inner(own));
       }
       if (segment < 0 && facet_of(uses[i]) != facet_of(uses[next - 1])) {
         return broken("facets " + std::to_string(facet_of(uses[i])) + " and " +

@@ -1,10 +1,10 @@
 #include "core/plane/mesh_pslg.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <string>
 #include <utility>
 
+#include "core/base/stopwatch.hpp"
 #include "core/cell/measure_cell.hpp"
 #include "core/cell/quadratic.hpp"
 #include "core/guard/check_cell.hpp"
@@ -32,21 +32,6 @@ constexpr double kSamplingAngleDeg = 38;  // below, samples are taken from the s
 // milliseconds each, and greedy coarsening ends in different places.
 constexpr std::size_t kSmallCell = 500;
 constexpr double kFurtherStartsDeg[] = {0, 0, 0, 1, 2, 3};
-
-class Stopwatch {
- public:
-  // Milliseconds since the last call.
-  double lap() {
-    const auto now = Clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return ms;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last_ = Clock::now();
-};
 
 // A bound on the area asks for at least area / bound triangles: refuse at once what cannot fit.
 Result<void> check_area_budget(const InitialTriangulation& start,
@@ -105,11 +90,11 @@ Result<WorkDone> refine_and_coarsen(QuotientTriangulation& mesh,
                                     ExecutionContext& context) {
   Editor editor(mesh);
   Refiner refiner(editor, criteria, settings, context);
-  if (auto ok = refiner.run(); !ok) return tl::unexpected<Error>(ok.error());
+  SYMCELL_TRY(refiner.run());
   mesh.compact();
   Coarsener coarsener(editor, criteria, refiner.surgery(), context);
   if (settings.relocate) {
-    if (auto ok = coarsener.run(); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(coarsener.run());
     mesh.compact();
   }
   return WorkDone{refiner.counters(), coarsener.counters(), editor.counters()};
@@ -170,7 +155,7 @@ Result<WorkDone> refine_from_starts(InitialTriangulation& start,
 
 // Down to the Delaunay property, and that all of the domain is covered and nothing else.
 Result<void> check_mesh(const QuotientTriangulation& mesh, const SegmentCover& wanted) {
-  if (auto ok = validate(mesh, ValidationLevel::kDelaunay); !ok) return ok;
+  SYMCELL_TRY(validate(mesh, ValidationLevel::kDelaunay));
   return compare_segment_covers(wanted, measure_segment_cover(mesh));
 }
 
@@ -206,38 +191,34 @@ Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
   Statistics& stats = outcome.statistics;
   Stopwatch total, watch;
   context.report(Phase::kSymmetry, 0.02);
-  if (auto ok = validate_pslg(pslg, context); !ok) return tl::unexpected<Error>(ok.error());
+  SYMCELL_TRY(validate_pslg(pslg, context));
   auto symmetric = symmetrise(pslg, options, context);
-  if (!symmetric) return tl::unexpected<Error>(symmetric.error());
+  if (!symmetric) return error_of(symmetric);
   record(*symmetric, stats.symmetry);
   stats.timings_ms.symmetry = watch.lap();
 
   context.report(Phase::kInitial, 0.08);
   auto start = triangulate_initial(*symmetric, context);
-  if (!start) return tl::unexpected<Error>(start.error());
+  if (!start) return error_of(start);
   stats.timings_ms.initial = watch.lap();
 
   const SegmentCover wanted = measure_segment_cover(start->mesh);
   Criteria criteria(start->mesh, start->subdomains, options);
-  if (auto ok = check_area_budget(*start, criteria, context); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  SYMCELL_TRY(check_area_budget(*start, criteria, context));
   const auto work = refine_from_starts(*start, criteria, options, symmetric->center, context);
-  if (!work) return tl::unexpected<Error>(work.error());
+  if (!work) return error_of(work);
   record(*work, start->mesh, symmetric->orbit_points.size(), stats.refinement);
   stats.timings_ms.refine = watch.lap();
 
   context.report(Phase::kCell, 0.92, start->mesh.triangle_count(), 1);
-  if (auto ok = check_mesh(start->mesh, wanted); !ok) return tl::unexpected<Error>(ok.error());
+  SYMCELL_TRY(check_mesh(start->mesh, wanted));
   stats.timings_ms.check = watch.lap();
-  if (auto ok = count_exempt(start->mesh, criteria, stats); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  SYMCELL_TRY(count_exempt(start->mesh, criteria, stats));
   auto cut = cut_cell(start->mesh);
-  if (!cut) return tl::unexpected<Error>(cut.error());
+  if (!cut) return error_of(cut);
   outcome.mesh = build_cell_mesh(*start, *cut, *symmetric);
   stats.timings_ms.cell = watch.lap();
-  if (auto ok = check_cell(outcome.mesh); !ok) return tl::unexpected<Error>(ok.error());
+  SYMCELL_TRY(check_cell(outcome.mesh));
   stats.timings_ms.check += watch.lap();
   if (options.order == 2) outcome.mesh = elevate_to_quadratic(outcome.mesh);
   measure_cell_2(outcome.mesh, stats);

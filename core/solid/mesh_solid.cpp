@@ -1,11 +1,11 @@
 #include "core/solid/mesh_solid.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "core/base/stopwatch.hpp"
 #include "core/cell/measure_cell.hpp"
 #include "core/cell/quadratic.hpp"
 #include "core/guard/check_cell.hpp"
@@ -41,12 +41,6 @@ constexpr double kPoorSine = 0.26;         // 15 degrees
 constexpr double kPoorExemptSine = 0.087;  // 5 degrees: the input may have few more
 constexpr double kSizedPoorSine = 0.174;   // 10 degrees: large meshes take their time
 constexpr double kPoorFactor = 1.5;
-
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 bool is_poor(const RefinedSolid& mesh) {
   return mesh.least_sine < kPoorSine || mesh.least_exempt_sine < kPoorExemptSine;
@@ -87,16 +81,15 @@ Result<RefinedSolid> refine_from_starts(Starts& starts,
   for (int start = 0; start < kMostStartsIfBad; ++start) {
     if (start > 0 && !starts.has_next()) break;
     if (best && !is_worth_another_start(*best, start, starts.effort(), options)) break;
-    auto began = Clock::now();
+    Stopwatch watch;
     if (!best) context.report(Phase::kInitial, 0.08);
     auto solid = starts.next(context);
-    timings.initial += milliseconds_since(began);
-    began = Clock::now();
+    timings.initial += watch.lap();
     const std::uint64_t most =
         best ? kMostTimesLarger * best->count() : std::numeric_limits<std::uint64_t>::max();
-    auto refined = solid ? refine_and_improve(std::move(*solid), options, most, context)
-                         : tl::unexpected<Error>(solid.error());
-    timings.refine += milliseconds_since(began);
+    auto refined =
+        solid ? refine_and_improve(std::move(*solid), options, most, context) : error_of(solid);
+    timings.refine += watch.lap();
     if (refined) {
       if (!best || is_better(*refined, *best, options)) best = std::move(*refined);
       continue;
@@ -107,7 +100,7 @@ Result<RefinedSolid> refine_from_starts(Starts& starts,
     if (!may_go_on || last.code == ErrorCode::kCancelled) return refined;
     if (!context.check()) break;
   }
-  if (!best) return tl::unexpected<Error>(last);
+  if (!best) return fail(last);
   return std::move(*best);
 }
 
@@ -121,18 +114,18 @@ Result<MeshOutcome> mesh_solid(const SectorSource& source,
   Starts starts(source);
   for (int attempt = 1;; ++attempt) {
     auto refined = refine_from_starts(starts, options, context, stats.timings_ms);
-    if (!refined) return tl::unexpected<Error>(refined.error());
-    const auto start = Clock::now();
+    if (!refined) return error_of(refined);
+    Stopwatch watch;
     const QuotientTetrahedralization& mesh = refined->solid.mesh;
     context.report(Phase::kCell, 0.92, mesh.tet_count(), 1);
     const auto cut = cut_cell(mesh, context);
-    stats.timings_ms.cell += milliseconds_since(start);
+    stats.timings_ms.cell += watch.lap();
     Error last;
     if (cut) {
       outcome.mesh = build_cell_mesh(refined->solid, *cut, source.symmetry());
-      const auto begun = Clock::now();
+      stats.timings_ms.cell += watch.lap();
       const auto sound = check_cell(outcome.mesh, &refined->solid.cover.boundary);
-      stats.timings_ms.check += milliseconds_since(begun) + refined->check_ms;
+      stats.timings_ms.check += watch.lap() + refined->check_ms;
       if (sound) {
         stats.refinement = refined->refinement;
         stats.exempt = std::move(refined->exempt);
@@ -145,12 +138,12 @@ Result<MeshOutcome> mesh_solid(const SectorSource& source,
     }
     // Rarely, in narrow sectors, a mesh has no cell without flaws: another one has.
     const bool may_go_on = last.code == ErrorCode::kInternal && attempt < kMostCuts;
-    if (!may_go_on || !starts.has_next()) return tl::unexpected<Error>(last);
+    if (!may_go_on || !starts.has_next()) return fail(last);
   }
-  const auto start = Clock::now();
+  Stopwatch watch;
   if (options.order == 2) outcome.mesh = elevate_to_quadratic(outcome.mesh);
   measure_cell_3(outcome.mesh, stats);
-  stats.timings_ms.cell += milliseconds_since(start);
+  stats.timings_ms.cell += watch.lap();
   stats.peak_memory_bytes = peak_memory_bytes();
   context.report(Phase::kDone, 1, stats.cell.elements, 1);
   return outcome;

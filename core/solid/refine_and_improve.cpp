@@ -1,7 +1,6 @@
 #include "core/solid/refine_and_improve.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -10,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/stopwatch.hpp"
 #include "core/solid/delaunay/legalise.hpp"
 #include "core/solid/improve/improver.hpp"
 #include "core/solid/quotient/constraints.hpp"
@@ -139,7 +139,7 @@ Result<void> improve(Editor& editor,
     if (full) editor.compact();
     Surgery surgery(editor, criteria);
     Improver improver(surgery, criteria, context);
-    if (auto ok = full ? improver.round(goal) : improver.mend(goal); !ok) return ok;
+    SYMCELL_TRY(full ? improver.round(goal) : improver.mend(goal));
     const std::size_t count = editor.mesh().tet_count();
     const std::size_t rounds = count > kLargeCell ? kRoundsIfLarge : kRounds;
     bool last = false;
@@ -152,7 +152,7 @@ Result<void> improve(Editor& editor,
     }
     // What is too large must not stay, whatever else does.
     const int depth = last ? kDepths[0] : kDepths[round];
-    if (auto ok = refine(editor, criteria, depth, context, work); !ok) return ok;
+    SYMCELL_TRY(refine(editor, criteria, depth, context, work));
     if (last) break;
   }
   if (options.delaunay) return {};  // flips undo what comes now
@@ -209,21 +209,17 @@ Result<void> refine_alone(Editor& editor,
                           Work& work) {
   if (!options.delaunay) {
     for (const int depth : kDepthsAlone) {
-      if (auto ok = refine(editor, criteria, depth, context, work); !ok) return ok;
+      SYMCELL_TRY(refine(editor, criteria, depth, context, work));
     }
     return {};
   }
   for (const int depth : kDepthsDelaunay) {
-    if (const auto flips = legalise(editor, context); !flips) {
-      return tl::unexpected<Error>(flips.error());
-    }
+    SYMCELL_TRY(legalise(editor, context));
     work.illegal_too = count_illegal(editor) > 0;
     if (!work.illegal_too && count_bad(editor, criteria) == 0) return {};
-    if (auto ok = refine(editor, criteria, depth, context, work); !ok) return ok;
+    SYMCELL_TRY(refine(editor, criteria, depth, context, work));
   }
-  if (const auto flips = legalise(editor, context); !flips) {
-    return tl::unexpected<Error>(flips.error());
-  }
+  SYMCELL_TRY(legalise(editor, context));
   // Flips know of no bound; where the two cannot be had together, the bounds are kept.
   if (count_bad(editor, criteria) == 0) return {};
   return refine(editor, criteria, kDepthsDelaunay[0], context, work);
@@ -232,7 +228,7 @@ Result<void> refine_alone(Editor& editor,
 // Whether all of the facets and segments is covered, once, and nothing else.
 Result<void> check_cover(const InitialTetrahedralization& solid) {
   const auto cover = measure_facet_cover(constraints_of(solid.mesh, solid.axis_segment()));
-  if (!cover) return tl::unexpected<Error>(cover.error());
+  if (!cover) return error_of(cover);
   return compare_facet_covers(solid.cover, *cover, solid.diameter);
 }
 
@@ -265,7 +261,7 @@ Result<RefinedSolid> refine_and_improve(InitialTetrahedralization solid,
   const double volume = total_volume(editor);
   const Criteria criteria(result.solid, options);
   const auto least = check_volume_budget(editor, criteria, context);
-  if (!least) return tl::unexpected<Error>(least.error());
+  if (!least) return error_of(least);
   result.least_count = *least;
   {
     Surgery surgery(editor, criteria);
@@ -277,24 +273,21 @@ Result<RefinedSolid> refine_and_improve(InitialTetrahedralization solid,
   if (!options.plain) {
     auto ok = refine(editor, criteria, kDepths[0], context, work);
     if (ok) ok = improve(editor, criteria, options, context, work);
-    if (!ok) return tl::unexpected<Error>(ok.error());
+    if (!ok) return error_of(ok);
   }
   if (options.plain || options.delaunay) {
     auto ok = refine_alone(editor, criteria, options, context, work);
-    if (!ok) return tl::unexpected<Error>(ok.error());
+    if (!ok) return error_of(ok);
   }
   result.refinement = count_work(editor, work.refined);
   editor.compact();  // what follows goes from neighbour to neighbour
-  const auto begun = std::chrono::steady_clock::now();
+  Stopwatch watch;
   const auto report = validate(mesh, ValidationLevel::kEmbedding, volume);
-  if (!report) return tl::unexpected<Error>(report.error());
-  if (auto ok = check_cover(result.solid); !ok) return tl::unexpected<Error>(ok.error());
-  result.check_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count();
+  if (!report) return error_of(report);
+  SYMCELL_TRY(check_cover(result.solid));
+  result.check_ms = watch.lap();
   result.delaunay = count_illegal(editor) == 0;
-  if (auto ok = count_exempt(editor, criteria, result); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  SYMCELL_TRY(count_exempt(editor, criteria, result));
   mesh.compact_vertices();
   return result;
 }

@@ -75,10 +75,10 @@ ModelPinches planar_pinches(const Pslg& pslg, const plane::Subdomains& subdomain
 }
 
 Result<ExaminedModel> examine(const Pslg& pslg) {
-  if (auto ok = check_indices(pslg); !ok) return tl::unexpected<Error>(ok.error());
+  SYMCELL_TRY(check_indices(pslg));
   ExecutionContext context;
   Result<plane::Subdomains> subdomains = plane::make_subdomains(pslg, context);
-  if (!subdomains) return tl::unexpected<Error>(subdomains.error());
+  if (!subdomains) return error_of(subdomains);
   ModelFacts facts;
   facts.diameter = diameter(raised(pslg.vertices));
   UnionFind parts(subdomains->faces.size());
@@ -122,7 +122,7 @@ double off_plane(const solid::PlcComplex& complex) {
 Result<ExaminedModel> examine(const Plc& plc) {
   ExecutionContext context;
   Result<solid::ValidPlc> valid = solid::validate_plc(plc, context);
-  if (!valid) return tl::unexpected<Error>(valid.error());
+  if (!valid) return error_of(valid);
   PlcModel model{std::move(*valid), 0};
   const solid::PlcComplex& complex = model.valid.complex;
   const solid::PlcCells& cells = model.valid.cells;
@@ -205,7 +205,7 @@ SidedTriangles sided(const IndexedSurface& surface) {
 }
 
 Result<ExaminedModel> examine(const TriangleSurface& given) {
-  if (auto ok = check_triangles(given); !ok) return tl::unexpected<Error>(ok.error());
+  SYMCELL_TRY(check_triangles(given));
   ModelFacts facts;
   facts.diameter = diameter(given.vertices);
   SurfaceModel model{&given, closed_surface(given, facts.diameter), false};

@@ -165,7 +165,7 @@ class Verifier {
       checks_.skip("full.pieces", "needs a model that is enclosed");
       return;
     }
-    internal::UnionFind parts(full.mesh.element_count());
+    UnionFind parts(full.mesh.element_count());
     internal::each_inner_facet(full, [&](std::int32_t a, std::int32_t b) { parts.join(a, b); });
     const std::size_t found = parts.class_count(), wanted = *examined_.facts.pieces;
     checks_.add("full.pieces", found == wanted,

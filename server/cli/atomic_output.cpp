@@ -33,7 +33,7 @@ AtomicOutput::~AtomicOutput() {
   if (!temporary_.empty()) (void)unlink(temporary_.c_str());
 }
 
-tl::unexpected<Error> AtomicOutput::failure() const {
+Failure AtomicOutput::failure() const {
   return fail(ErrorCode::kWriteFailed, "cannot write " + path_ + ": " + std::strerror(errno));
 }
 

@@ -29,7 +29,7 @@ class AtomicOutput {
   [[nodiscard]] Result<void> commit();
 
  private:
-  [[nodiscard]] tl::unexpected<Error> failure() const;
+  [[nodiscard]] Failure failure() const;
 
   std::string path_;       // as the user gave it
   std::string target_;     // with links followed

@@ -31,12 +31,12 @@ Result<void> inspect(const InspectArguments& arguments,
                      MeshOptions options,
                      ExecutionContext& context) {
   const Result<Model> model = read_model_file(arguments.model);
-  if (!model) return tl::unexpected(model.error());
+  if (!model) return error_of(model);
   const Result<MeshOptions> fitting = options_for(kind_of(*model), std::move(options));
-  if (!fitting) return tl::unexpected(fitting.error());
+  if (!fitting) return error_of(fitting);
   context.set_time_limit(fitting->time_limit_s);
   const Result<Inspection> found = inspect_model(*model, *fitting, context);
-  if (!found) return tl::unexpected(found.error());
+  if (!found) return error_of(found);
   std::printf("%s\n", inspection_to_json(*found).dump(2).c_str());
   if (std::fflush(stdout) != 0) {
     return fail(ErrorCode::kWriteFailed, "cannot write to standard output");
@@ -46,7 +46,7 @@ Result<void> inspect(const InspectArguments& arguments,
 
 Result<void> run(const InspectArguments& arguments) {
   const Result<MeshOptions> options = arguments.flags.options();
-  if (!options) return tl::unexpected(options.error());
+  if (!options) return error_of(options);
   return run_supervised(
       [&](ExecutionContext& context) { return inspect(arguments, *options, context); },
       {.time_limit_s = options->time_limit_s, .memory_bytes = options->memory_limit_bytes});

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include "api/formats/mesh_writer.hpp"
 #include "api/schema/options.hpp"
 #include "api/schema/statistics_json.hpp"
+#include "core/base/stopwatch.hpp"
 #include "core/mesh_model.hpp"
 #include "server/base/fault_archive.hpp"
 #include "server/base/identifiers.hpp"
@@ -51,12 +51,6 @@ struct MeshArguments {
   bool quiet = false;
   OptionFlags flags;
 };
-
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 std::uint64_t peak_memory() {
   rusage usage{};
@@ -130,7 +124,7 @@ class MeshRun {
   // In the child process: what it does to this object is not seen by commit(), but for the files.
   Result<void> mesh_and_write() {
     auto outcome = mesh();
-    if (!outcome) return tl::unexpected(outcome.error());
+    if (!outcome) return error_of(outcome);
     auto done = write(*outcome);
     // A sink that stops for a signal looks like a failed write.
     if (!done && context_->cancelled()) {
@@ -141,10 +135,10 @@ class MeshRun {
 
   Result<void> prepare() {
     const Result<MeshOptions> options = arguments_.flags.options();
-    if (!options) return tl::unexpected(options.error());
+    if (!options) return error_of(options);
     options_ = *options;
     const Result<WriteOptions> writing = write_options(arguments_.encoding);
-    if (!writing) return tl::unexpected(writing.error());
+    if (!writing) return error_of(writing);
     write_options_ = *writing;
     const std::array paths{arguments_.cell, arguments_.full, arguments_.stats};
     if (std::ranges::count(paths, std::string("-")) > 1) {
@@ -154,16 +148,16 @@ class MeshRun {
                                      std::pair{MeshPart::kFull, arguments_.full}}) {
       if (path.empty()) continue;
       const Result<MeshFormat> format = output_format(path, arguments_.format);
-      if (!format) return tl::unexpected(format.error());
+      if (!format) return error_of(format);
       Result<AtomicOutput> file = AtomicOutput::open(path);
-      if (!file) return tl::unexpected(file.error());
+      if (!file) return error_of(file);
       meshes_.push_back({part, *format, std::move(*file)});
     }
     // With no output asked for, the figures are what one wants to see.
     const bool nothing = meshes_.empty() && arguments_.stats.empty();
     if (!nothing && arguments_.stats.empty()) return {};
     Result<AtomicOutput> file = AtomicOutput::open(nothing ? "-" : arguments_.stats);
-    if (!file) return tl::unexpected(file.error());
+    if (!file) return error_of(file);
     statistics_.emplace(std::move(*file));
     return {};
   }
@@ -171,13 +165,13 @@ class MeshRun {
   Result<MeshOutcome> mesh() {
     context_->set_time_limit(options_.time_limit_s);
     context_->set_max_elements(options_.max_elements);
-    const Clock::time_point start = Clock::now();
+    Stopwatch watch;
     const Result<Model> model = read_model_file(arguments_.model);
-    if (!model) return tl::unexpected(model.error());
-    const double parse_ms = milliseconds_since(start);
+    if (!model) return error_of(model);
+    const double parse_ms = watch.lap();
     kind_ = kind_of(*model);
     const Result<MeshOptions> fitting = options_for(kind_, options_);
-    if (!fitting) return tl::unexpected(fitting.error());
+    if (!fitting) return error_of(fitting);
     options_ = *fitting;
     for (const MeshOutput& output : meshes_) {
       // Told by the model, but it is the command line that asks for it.
@@ -193,17 +187,16 @@ class MeshRun {
     context_->report(Phase::kWrite, 0.99, outcome.mesh.element_count(), 1);
     Statistics::TimingsMs& timings = outcome.statistics.timings_ms;
     for (MeshOutput& output : meshes_) {
-      const Clock::time_point start = Clock::now();
+      Stopwatch watch;
       const Sink file = output.file.sink();
       const Sink sink = [&](std::string_view piece) {
         return !context_->cancelled() && file(piece);
       };
       auto written = write_mesh(outcome.mesh, output.part, output.format, write_options_, sink);
       if (!written) return written;
-      (output.part == MeshPart::kFull ? timings.restore : timings.write) +=
-          milliseconds_since(start);
+      (output.part == MeshPart::kFull ? timings.restore : timings.write) += watch.lap();
     }
-    timings.total = milliseconds_since(start_);
+    timings.total = total_.lap();
     outcome.statistics.peak_memory_bytes =
         std::max(outcome.statistics.peak_memory_bytes, peak_memory());
     if (!statistics_) return {};
@@ -214,13 +207,13 @@ class MeshRun {
 
   Result<void> commit() {
     for (MeshOutput& output : meshes_) {
-      if (auto done = output.file.commit(); !done) return done;
+      SYMCELL_TRY(output.file.commit());
     }
     return statistics_ ? statistics_->commit() : Result<void>{};
   }
 
   const MeshArguments& arguments_;
-  Clock::time_point start_ = Clock::now();
+  Stopwatch total_;
   MeshOptions options_;
   ModelKind kind_ = ModelKind::kPslg;  // of the model, once it is read
   WriteOptions write_options_;

@@ -50,17 +50,17 @@ Result<std::string> read_input(const std::string& path) {
 
 Result<Model> read_model_file(const std::string& path) {
   const Result<std::string> bytes = read_input(path);
-  if (!bytes) return tl::unexpected(bytes.error());
+  if (!bytes) return error_of(bytes);
   return read_model(*bytes, model_format_from_name(path));
 }
 
 Result<MeshData> read_mesh_file(const std::string& path) {
   const Result<std::string> bytes = read_up_to(path, kMaxMeshBytes);
-  if (!bytes) return tl::unexpected(bytes.error());
+  if (!bytes) return error_of(bytes);
   auto mesh = [&]() -> Result<MeshData> {
     if (!is_gzip(*bytes)) return read_vtu(*bytes);
     const Result<std::string> text = gunzip(*bytes, kMaxMeshBytes);
-    if (!text) return tl::unexpected(text.error());
+    if (!text) return error_of(text);
     return read_vtu(*text);
   }();
   if (!mesh) mesh.error().message = path + ": " + mesh.error().message;

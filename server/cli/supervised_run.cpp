@@ -216,7 +216,7 @@ Result<void> run_supervised(const std::function<Result<void>(ExecutionContext&)>
   bar.stop();
   ::close(pipe[0]);
   if (auto result = decode(supervisor.text())) return *result;
-  return tl::unexpected(
+  return fail(
       server::error_of(end, {settings.memory_bytes, 0}, settings.time_limit_s, context.progress()));
 }
 

@@ -63,11 +63,11 @@ void print_report(const VerifyReport& report, const VerifyArguments& arguments) 
 
 Result<bool> verify(const VerifyArguments& arguments) {
   const Result<MeshData> cell = read_mesh_file(arguments.cell);
-  if (!cell) return tl::unexpected(cell.error());
+  if (!cell) return error_of(cell);
   std::optional<MeshData> full;
   if (!arguments.full.empty()) {
     Result<MeshData> read = read_mesh_file(arguments.full);
-    if (!read) return tl::unexpected(read.error());
+    if (!read) return error_of(read);
     full = std::move(*read);
   }
   std::optional<Model> model;
@@ -76,7 +76,7 @@ Result<bool> verify(const VerifyArguments& arguments) {
   options.model_tolerance_rel = arguments.model_tolerance;
   if (!arguments.model.empty()) {
     Result<Model> read = read_model_file(arguments.model);
-    if (!read) return tl::unexpected(read.error());
+    if (!read) return error_of(read);
     model = std::move(*read);
   }
   const VerifyReport report =

@@ -77,7 +77,7 @@ class Scanner {
   std::size_t at_ = 0;
 };
 
-tl::unexpected<Error> syntax_error(std::size_t position, const std::string& expected) {
+Failure syntax_error(std::size_t position, const std::string& expected) {
   return fail(ErrorCode::kJsonSyntax, "the body is not well-formed JSON at byte " +
                                           std::to_string(position) + ": " + expected + " expected");
 }
@@ -112,9 +112,7 @@ Result<Members> scan_members(Scanner& scanner) {
     if (!scanner.take(':')) return syntax_error(scanner.position(), "':'");
     const auto value = scanner.take_value();
     if (!value) return syntax_error(scanner.position(), "a complete value");
-    if (const auto noted = note_member(members, *name, *value); !noted) {
-      return tl::unexpected(noted.error());
-    }
+    SYMCELL_TRY(note_member(members, *name, *value));
     if (scanner.take('}')) return members;
     if (!scanner.take(',')) return syntax_error(scanner.position(), "',' or '}'");
   }
@@ -135,7 +133,7 @@ Result<EnvelopeParts> split_envelope(std::string_view body) {
     return fail(ErrorCode::kWrongType, "the body must be an object with \"model\" in it");
   }
   const auto members = scan_members(scanner);
-  if (!members) return tl::unexpected(members.error());
+  if (!members) return error_of(members);
   scanner.skip_space();
   if (!scanner.at_end()) return syntax_error(scanner.position(), "the end of the body");
 

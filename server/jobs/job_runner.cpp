@@ -176,7 +176,7 @@ void JobRunner::execute(const std::string& id, Running& running) {
 
 Result<void> JobRunner::run_engine(const Job& job, Running& running) {
   const auto options = options_from_json(nlohmann::json::parse(job.options_json));
-  if (!options) return tl::unexpected(options.error());
+  if (!options) return error_of(options);
   EngineJob work;
   work.model = parts_.files.model(job.id);
   work.model_format = job.model_format;
@@ -189,8 +189,8 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
 
   running.context.set_time_limit(options->time_limit_s);
   running.context.set_max_elements(options->max_elements);
-  if (const auto ready = running.context.check(); !ready) return ready;
-  if (const auto done = parts_.engine.run(work, running.context); !done) return done;
+  SYMCELL_TRY(running.context.check());
+  SYMCELL_TRY(parts_.engine.run(work, running.context));
   rename_durably(work.statistics, parts_.files.statistics(job.id));
   rename_durably(work.cell, parts_.files.cell(job.id));
   return {};

@@ -22,11 +22,11 @@ struct ProcessEnd {
 };
 
 enum class EndKind : std::uint8_t {
-  kCancelled,       // killed by the server
-  kTimeLimit,       // killed by the server or, for processor time, by the kernel
-  kMemoryLimit,     // refused memory
-  kCrash,           // a signal of its own making, or an unexpected exit
-  kOutside,  // killed by somebody else: the operator, the kernel when memory is short
+  kCancelled,    // killed by the server
+  kTimeLimit,    // killed by the server or, for processor time, by the kernel
+  kMemoryLimit,  // refused memory
+  kCrash,        // a signal of its own making, or an unexpected exit
+  kOutside,      // killed by somebody else: the operator, the kernel when memory is short
 };
 
 [[nodiscard]] std::string_view end_kind_name(EndKind kind);

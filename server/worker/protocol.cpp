@@ -104,7 +104,7 @@ Json to_json(const FailedMessage& message) {
 
 Result<WorkerMessage> request_from_json(const nlohmann::json& json) {
   const auto options = options_from_json(json.at("options"));
-  if (!options) return tl::unexpected(options.error());
+  if (!options) return error_of(options);
   RequestMessage request;
   request.task = static_cast<WorkerTask>(json.at("task").get<int>());
   request.job.model = path_from_text(json.at("model"));

@@ -56,7 +56,7 @@ WorkerLimits WorkerEngine::limits_of(const MeshOptions& options) const {
 
 TaskOutcome WorkerEngine::run_once(const RequestMessage& request, ExecutionContext& context) {
   Result<WorkerPool::Lease> worker = pool_.acquire(context);
-  if (!worker) return {tl::unexpected(worker.error())};
+  if (!worker) return {error_of(worker)};
   const std::int64_t pid = (*worker)->pid();
   TaskOutcome outcome = (*worker)->run(request, context);
   pool_.give_back(std::move(*worker));
@@ -86,7 +86,7 @@ Result<std::string> WorkerEngine::run_request(const RequestMessage& request,
 Result<void> WorkerEngine::run(const EngineJob& job, ExecutionContext& context) {
   const auto done = run_request(
       {.task = WorkerTask::kMesh, .job = job, .limits = limits_of(job.options)}, context);
-  if (!done) return tl::unexpected(done.error());
+  if (!done) return error_of(done);
   return {};
 }
 
@@ -105,7 +105,7 @@ Result<ModelFormat> WorkerEngine::recognise(const std::filesystem::path& model,
   request.limits = limits_of(request.job.options);
   const LargeRead place(large_reads_);
   const auto name = run_request(request, context);
-  if (!name) return tl::unexpected(name.error());
+  if (!name) return error_of(name);
   if (const auto format = model_format_of_name(*name)) return *format;
   return fail(ErrorCode::kInternal, "a worker names an unknown format: " + *name);
 }

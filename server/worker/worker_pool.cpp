@@ -48,7 +48,7 @@ Result<WorkerPool::Lease> WorkerPool::acquire(const ExecutionContext& context) {
     available_.wait_for(lock, kAcquireTick);
     if (const auto go_on = context.check(); !go_on) {
       --waiting_;
-      return tl::unexpected(go_on.error());
+      return error_of(go_on);
     }
     if (failed_starts_ > failed_before + 1 && idle_.empty()) {
       --waiting_;

@@ -199,8 +199,8 @@ TaskOutcome WorkerProcess::end_of_request(const RequestMessage& request,
                                           const ExecutionContext& context,
                                           KillReason reason) {
   const ProcessEnd how = end(reason);
-  TaskOutcome outcome{tl::unexpected(
-      error_of(how, request.limits, request.job.options.time_limit_s, context.progress()))};
+  TaskOutcome outcome{
+      fail(error_of(how, request.limits, request.job.options.time_limit_s, context.progress()))};
   outcome.end = kind_of(how, request.limits);
   outcome.last_words = std::move(last_words_);
   return outcome;
@@ -233,7 +233,7 @@ TaskOutcome WorkerProcess::run(const RequestMessage& request, ExecutionContext& 
       } else if (const auto* done = std::get_if<DoneMessage>(&received.message)) {
         return {done->document};
       } else if (const auto* failed = std::get_if<FailedMessage>(&received.message)) {
-        return {tl::unexpected(failed->error)};
+        return {fail(failed->error)};
       }
       continue;
     }

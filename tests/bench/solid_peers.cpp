@@ -34,7 +34,7 @@ Result<Sectors> cut(const Model& model) {
   auto source = std::holds_alternative<Plc>(model)
                     ? solid::symmetrise_plc(std::get<Plc>(model), options, context)
                     : solid::symmetrise_surface(std::get<TriangleSurface>(model), options, context);
-  if (!source) return tl::unexpected<Error>(source.error());
+  if (!source) return error_of(source);
   Sectors result;
   for (std::int32_t c = 0; c < (*source)->candidates(); ++c) {
     auto sector = (*source)->sector(c, context);
@@ -43,7 +43,7 @@ Result<Sectors> cut(const Model& model) {
       const auto initial = solid::tetrahedralize_sector(*sector, context);
       if (!initial) continue;
       const auto report = solid::validate(initial->mesh, ValidationLevel::kEmbedding);
-      if (!report) return tl::unexpected<Error>(report.error());
+      if (!report) return error_of(report);
       result.volume = report->volume * sector->fold;
     }
     result.sectors.push_back(std::move(*sector));

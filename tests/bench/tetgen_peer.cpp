@@ -37,7 +37,7 @@ class Wedge {
 
   Result<PeerInput> input() {
     auto section = initial::make_cut_section(sector_);
-    if (!section) return tl::unexpected<Error>(section.error());
+    if (!section) return error_of(section);
     PeerInput input;
     for (const OrbitVertex v : sector_.vertices) {
       input.points.push_back(rotations_.rotate(sector_.orbit_points[at(v.orbit)], v.exponent));
@@ -252,7 +252,7 @@ class Wedge {
 
 Result<PeerCount> whole(const PeerInput& input, PeerBounds bounds) {
   auto output = run_peer(input, switches_of("p", bounds));
-  if (!output) return tl::unexpected<Error>(output.error());
+  if (!output) return error_of(output);
   return output->count;
 }
 
@@ -290,9 +290,9 @@ Result<PeerCount> mesh_matched_sector(const solid::Sector& sector, PeerBounds bo
   PeerCount unmatched;
   for (std::int32_t round = 0; round < kMostRounds; ++round) {
     auto input = wedge.input();
-    if (!input) return tl::unexpected<Error>(input.error());
+    if (!input) return error_of(input);
     auto output = run_peer(*input, switches_of("p", bounds));
-    if (!output) return tl::unexpected<Error>(output.error());
+    if (!output) return error_of(output);
     if (round == 0) unmatched = output->count;
     if (wedge.split_curves(*output) > 0) continue;
     boundary = wedge.matched_boundary(*output);

@@ -105,7 +105,7 @@ Result<PeerOutput> run_peer(const PeerInput& input, const std::string& switches)
   const auto child = solid::run_in_child(
       [&](solid::ChildOutput& output) { return run_body(input, switches, output); },
       {.cpu_seconds = kCpuSeconds}, context);
-  if (!child) return tl::unexpected<Error>(child.error());
+  if (!child) return error_of(child);
   if (child->failure != solid::ChildFailure::kNone) {
     return fail(ErrorCode::kTetrahedralizationFailed,
                 child->failure == solid::ChildFailure::kCpuLimit ? "too long" : "crash");

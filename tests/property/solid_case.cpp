@@ -50,7 +50,7 @@ Result<MeshOutcome> mesh(const SolidCase& c) {
   context.set_max_elements(c.options.max_elements);
   context.set_time_limit(c.options.time_limit_s);
   auto source = solid::symmetrise_plc(c.model.plc, c.options, context);
-  if (!source) return tl::unexpected(source.error());
+  if (!source) return error_of(source);
   return solid::mesh_solid(**source, c.options, context);
 }
 

@@ -53,9 +53,9 @@ Result<MeshedSurface> mesh(const SurfaceCase& c) {
   context.set_max_elements(1'000'000);
   context.set_time_limit(120);
   auto source = solid::symmetrise_surface(c.model.surface, c.options, context);
-  if (!source) return tl::unexpected(source.error());
+  if (!source) return error_of(source);
   auto outcome = solid::mesh_solid(**source, c.options, context);
-  if (!outcome) return tl::unexpected(outcome.error());
+  if (!outcome) return error_of(outcome);
   return MeshedSurface{std::move(*outcome), (*source)->symmetry().error_rel};
 }
 

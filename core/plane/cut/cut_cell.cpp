@@ -29,7 +29,7 @@ class CellCutter {
       for (std::size_t c = 0; c < seeds_.size(); ++c) cut_component(static_cast<std::int32_t>(c));
     }
     for (const TriangleId seed : seeds_) {
-      if (auto ok = unroll(seed); !ok) return tl::unexpected<Error>(ok.error());
+      SYMCELL_TRY(unroll(seed));
     }
     if (mesh_.fold() > 1) gather_pieces();
     return std::move(cut_);

@@ -74,7 +74,7 @@ Result<Handles> insert_vertices(const SymmetricPslg& pslg,
   FaceHandle hint;
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i % kCheckInterval == 0) {
-      if (auto ok = context.check(); !ok) return tl::unexpected<Error>(ok.error());
+      SYMCELL_TRY(context.check());
     }
     const VertexHandle v = full.cdt.insert(points[order[i]], hint);
     v->info() = ids[order[i]];
@@ -101,7 +101,7 @@ Result<void> insert_segments(const SymmetricPslg& pslg,
   for (std::size_t s = 0; s < pslg.segments.size(); ++s) {
     for (std::int32_t k = 0; k < pslg.fold; ++k) {
       if (++done % kCheckInterval == 0) {
-        if (auto ok = context.check(); !ok) return ok;
+        SYMCELL_TRY(context.check());
       }
       const VertexHandle a = handles(turned(pslg.segments[s].a, k));
       const VertexHandle b = handles(turned(pslg.segments[s].b, k));
@@ -170,12 +170,12 @@ void apply_seeds(const SymmetricPslg& pslg, FullCdt& full) {
 Result<void> build_full_cdt(const SymmetricPslg& pslg, ExecutionContext& context, FullCdt& full) {
   try {
     auto handles = insert_vertices(pslg, context, full);
-    if (!handles) return tl::unexpected<Error>(handles.error());
+    if (!handles) return error_of(handles);
     if (full.cdt.dimension() < 2) {
       return fail(ErrorCode::kDegenerateGeometry, "all vertices lie on one line: there is no area");
     }
-    if (auto ok = context.check(); !ok) return ok;
-    if (auto ok = insert_segments(pslg, *handles, context, full); !ok) return ok;
+    SYMCELL_TRY(context.check());
+    SYMCELL_TRY(insert_segments(pslg, *handles, context, full));
   } catch (const std::exception& e) {
     return fail(ErrorCode::kSelfIntersection,
                 std::string("segments cross once the model is made symmetric (") + e.what() +

@@ -40,12 +40,12 @@ class QuotientBuilder {
       return fail(ErrorCode::kDegenerateGeometry,
                   "no area is left to mesh: the segments enclose nothing outside the holes");
     }
-    if (auto ok = choose_representatives(); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(choose_representatives());
     InitialTriangulation result{
         QuotientTriangulation(pslg_.fold, pslg_.fold > 1 ? full_.centre_orbit : -1), {}, nullptr};
     emit_vertices(result.mesh);
     emit_triangles(result.mesh);
-    if (auto ok = link_triangles(result.mesh); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(link_triangles(result.mesh));
     result.subdomains = subdomain_orbits_;
     if (full_.centre_orbit >= 0 && result.mesh.corner_of(full_.centre_orbit) == kNoHalfEdge) {
       result.mesh.set_centre(-1);
@@ -341,9 +341,7 @@ bool attributes_differ(const FullCdt& full, const std::vector<SubdomainOrbit>& o
 Result<InitialTriangulation> triangulate_initial(const SymmetricPslg& pslg,
                                                  ExecutionContext& context) {
   auto full = std::make_unique<initial::FullCdt>();
-  if (auto ok = initial::build_full_cdt(pslg, context, *full); !ok) {
-    return tl::unexpected<Error>(ok.error());
-  }
+  SYMCELL_TRY(initial::build_full_cdt(pslg, context, *full));
   auto result = initial::QuotientBuilder(pslg, *full).build();
   if (!result) return result;
   if (pslg.fold > 1 && pslg.ignore_markers &&

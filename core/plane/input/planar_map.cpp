@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "core/base/union_find.hpp"
 #include "core/geometry/predicates.hpp"
 #include "core/model/describe.hpp"
 
@@ -65,14 +66,14 @@ class Sweep {
     prepare();
     for (std::size_t i = 0; i < events_.size(); ++i) {
       if ((i & 0xfff) == 0) {
-        if (auto ok = context_.check(); !ok) return tl::unexpected(ok.error());
+        SYMCELL_TRY(context_.check());
       }
       if (events_[i] >= vertex_count()) {
         locate_query(events_[i] - vertex_count());
         continue;
       }
-      if (auto ok = check_distinct(i); !ok) return tl::unexpected(ok.error());
-      if (auto ok = visit(events_[i]); !ok) return tl::unexpected(ok.error());
+      SYMCELL_TRY(check_distinct(i));
+      SYMCELL_TRY(visit(events_[i]));
     }
     label_faces();
     return std::move(map_);
@@ -165,7 +166,7 @@ class Sweep {
       const std::int32_t hi = segment.a == v ? segment.b : segment.a;
       rising_.push_back({p, vertices_[at(hi)], hi, s});
     }
-    if (auto ok = sort_rising(); !ok) return ok;
+    SYMCELL_TRY(sort_rising());
     status_.erase(first, last);
     for (Active& s : rising_) {
       s.piece = add_piece(v, s.segment);
@@ -231,7 +232,7 @@ class Sweep {
   // `last`: what follows the segments just inserted.
   Result<void> check_neighbours(Status::iterator last) {
     if (last != status_.end() && last != status_.begin()) {
-      if (auto ok = check_pair(*std::prev(last), *last); !ok) return ok;
+      SYMCELL_TRY(check_pair(*std::prev(last), *last));
     }
     if (rising_.empty()) return {};
     const auto first = std::prev(last, static_cast<std::ptrdiff_t>(rising_.size()));
@@ -316,23 +317,16 @@ class Sweep {
       }
       ++cycles;
     }
-    std::vector<std::int32_t> parent(at(cycles));
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&parent](std::int32_t c) {
-      while (parent[at(c)] != c) c = parent[at(c)] = parent[at(parent[at(c)])];
-      return c;
-    };
+    UnionFind faces(at(cycles));
     const auto above = [&cycle](std::int32_t piece) {
       return piece == kNone ? 0 : cycle[at(2 * piece)];
     };
     for (const Join& join : joins_) {
-      const std::int32_t c = root(cycle[at(join.item)]);
-      const std::int32_t d = root(above(join.below));
-      parent[at(std::max(c, d))] = std::min(c, d);
+      faces.join(cycle[at(join.item)], above(join.below));
     }
     std::vector<std::int32_t> face_of(at(cycles), kNone);
     for (std::int32_t c = 0; c < cycles; ++c) {
-      std::int32_t& face = face_of[at(root(c))];
+      std::int32_t& face = face_of[at(faces.root(c))];
       if (face == kNone) face = map_.face_count++;
       face_of[at(c)] = face;
     }

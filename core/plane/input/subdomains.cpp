@@ -66,7 +66,7 @@ Result<Subdomains> make_subdomains(const Pslg& pslg, ExecutionContext& context) 
   std::vector<Point2> seeds = pslg.holes;
   for (const PslgRegion& region : pslg.regions) seeds.push_back(region.point);
   auto map = make_tolerant_map(pslg, seeds, context);
-  if (!map) return tl::unexpected(map.error());
+  if (!map) return error_of(map);
 
   Subdomains result;
   result.map = std::move(*map);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "core/geometry/limits.hpp"
 #include "core/geometry/predicates.hpp"
 #include "core/model/describe.hpp"
-#include "core/model/limits.hpp"
 #include "core/plane/input/subdomains.hpp"
 
 namespace symcell::plane {
@@ -61,13 +61,13 @@ Result<void> check_point(Point2 p, const char* array, std::size_t index, const c
 
 Result<void> check_points(const Pslg& pslg) {
   for (std::size_t i = 0; i < pslg.vertices.size(); ++i) {
-    if (auto ok = check_point(pslg.vertices[i], "vertices", i, "vertex"); !ok) return ok;
+    SYMCELL_TRY(check_point(pslg.vertices[i], "vertices", i, "vertex"));
   }
   for (std::size_t i = 0; i < pslg.holes.size(); ++i) {
-    if (auto ok = check_point(pslg.holes[i], "holes", i, "hole seed"); !ok) return ok;
+    SYMCELL_TRY(check_point(pslg.holes[i], "holes", i, "hole seed"));
   }
   for (std::size_t i = 0; i < pslg.regions.size(); ++i) {
-    if (auto ok = check_point(pslg.regions[i].point, "regions", i, "region seed"); !ok) return ok;
+    SYMCELL_TRY(check_point(pslg.regions[i].point, "regions", i, "region seed"));
   }
   return {};
 }
@@ -224,21 +224,21 @@ Result<void> check_seed_conflicts(const Pslg& pslg, const PlanarMap& map) {
 }  // namespace
 
 Result<void> validate_pslg(const Pslg& pslg, ExecutionContext& context) {
-  if (auto ok = check_size(pslg); !ok) return ok;
-  if (auto ok = check_points(pslg); !ok) return ok;
-  if (auto ok = check_segments(pslg); !ok) return ok;
-  if (auto ok = check_extent(pslg); !ok) return ok;
-  if (auto ok = context.check(); !ok) return ok;
-  if (auto ok = check_duplicates(pslg); !ok) return ok;
-  if (auto ok = check_not_collinear(pslg); !ok) return ok;
+  SYMCELL_TRY(check_size(pslg));
+  SYMCELL_TRY(check_points(pslg));
+  SYMCELL_TRY(check_segments(pslg));
+  SYMCELL_TRY(check_extent(pslg));
+  SYMCELL_TRY(context.check());
+  SYMCELL_TRY(check_duplicates(pslg));
+  SYMCELL_TRY(check_not_collinear(pslg));
   const auto subdomains = make_subdomains(pslg, context);
-  if (!subdomains) return tl::unexpected(subdomains.error());
+  if (!subdomains) return error_of(subdomains);
   if (subdomains->map.face_count < 2) {
     return fail(ErrorCode::kDegenerateGeometry,
                 "the segments enclose no area; close them into loops");
   }
-  if (auto ok = check_seed_places(pslg, subdomains->map); !ok) return ok;
-  if (auto ok = check_seed_conflicts(pslg, subdomains->map); !ok) return ok;
+  SYMCELL_TRY(check_seed_places(pslg, subdomains->map));
+  SYMCELL_TRY(check_seed_conflicts(pslg, subdomains->map));
   const bool meshed = std::any_of(subdomains->faces.begin(), subdomains->faces.end(),
                                   [](const Subdomain& face) { return face.meshed; });
   if (!meshed) {

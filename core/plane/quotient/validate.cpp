@@ -101,7 +101,7 @@ Result<void> validate(const QuotientTriangulation& mesh, ValidationLevel level) 
   for (std::size_t layer = 0; layer <= static_cast<std::size_t>(level); ++layer) {
     for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {
       if (!mesh.alive(t)) continue;
-      if (auto ok = kLayers[layer](mesh, t); !ok) return ok;
+      SYMCELL_TRY(kLayers[layer](mesh, t));
     }
   }
   return {};

@@ -70,7 +70,7 @@ Result<void> Coarsener::run() {
       if (i % kCheckInterval == 0) {
         const auto elements = static_cast<std::uint64_t>(mesh_.triangle_count());
         context_.report(Phase::kImprove, 0.7 + 0.2 * (round + 1.0) / rounds, elements, 1);
-        if (auto ok = context_.check(elements); !ok) return ok;
+        SYMCELL_TRY(context_.check(elements));
       }
       const VertexId v = order[i];
       if (!is_steiner(v)) continue;

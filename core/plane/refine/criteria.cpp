@@ -115,9 +115,8 @@ bool Criteria::in_narrow_corner(const QuotientTriangulation& mesh,
   const Point2 middle = 0.5 * (mesh.corner_point(t, next3(i)) + mesh.corner_point(t, prev3(i)));
   const std::int32_t back = v == mesh.centre() ? 0 : mesh.subtract(0, t.k[i]);
   const Point2 d = mesh.rotations().rotate(middle - p, back);
-  const auto first =
-      std::lower_bound(narrow_.begin(), narrow_.end(), v,
-                       [](const NarrowCorner& c, VertexId id) { return c.v < id; });
+  const auto first = std::lower_bound(narrow_.begin(), narrow_.end(), v,
+                                      [](const NarrowCorner& c, VertexId id) { return c.v < id; });
   for (auto it = first; it != narrow_.end() && it->v == v; ++it) {
     if (cross(it->from, d) > 0 && cross(d, it->to) > 0) return true;
   }

@@ -121,10 +121,10 @@ void Refiner::enqueue_created() {
 Result<void> Refiner::run() {
   enqueue_all();
   for (;;) {
-    if (auto ok = split_queued_subsegments(); !ok) return ok;
+    SYMCELL_TRY(split_queued_subsegments());
     const auto t = queue_.pop(mesh_);
     if (!t) break;
-    if (auto ok = tick(); !ok) return ok;
+    SYMCELL_TRY(tick());
     switch (treat(*t)) {
       case Outcome::kExempt: break;
       case Outcome::kDone:
@@ -135,7 +135,7 @@ Result<void> Refiner::run() {
         if (a.verdict != Verdict::kGood) queue_.push(mesh_, *t, a.shortest2);
         break;
       }
-      case Outcome::kStuck: return tl::unexpected<Error>(unreachable(*t));
+      case Outcome::kStuck: return fail(unreachable(*t));
     }
   }
   return context_.check(mesh_.triangle_count());
@@ -163,8 +163,8 @@ Result<void> Refiner::split_queued_subsegments() {
     const bool forced = (seg.queued & kForced) != 0;
     seg.queued = 0;
     if (!forced && !encroached(s)) continue;
-    if (auto ok = tick(); !ok) return ok;
-    if (auto ok = split(s); !ok) return ok;
+    SYMCELL_TRY(tick());
+    SYMCELL_TRY(split(s));
   }
   return {};
 }
@@ -214,7 +214,7 @@ Result<void> Refiner::split(SubsegmentId s) {
   const OrbitVertex a{tri.v[next3(j)], tri.k[next3(j)]}, b{tri.v[prev3(j)], tri.k[prev3(j)]};
   const Point2 p = mesh_.lift(a.orbit, a.exponent), q = mesh_.lift(b.orbit, b.exponent);
   if (squared_distance(p, q) < 4 * shortest_allowed2_) {
-    return tl::unexpected<Error>(unreachable(t));
+    return fail(unreachable(t));
   }
   const Criteria::SegmentEnds ends = criteria_.segment_ends(mesh_, a, b);
   Point2 x = split_point(a, b);
@@ -229,7 +229,7 @@ Result<void> Refiner::split(SubsegmentId s) {
     }
   }
   const VertexId v = editor_.insert_on_edge(h, x, cavity_, VertexKind::kSegment);
-  if (v < 0) return tl::unexpected<Error>(unreachable(t));
+  if (v < 0) return fail(unreachable(t));
   if (optimal) settle_star();
   criteria_.set_segment_ends(v, ends);
   ++counters_.splits;

@@ -10,7 +10,7 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-tl::unexpected<Error> not_symmetric(std::string what, std::vector<std::int64_t> segments) {
+Failure not_symmetric(std::string what, std::vector<std::int64_t> segments) {
   const std::string pointer = "/segments/" + std::to_string(segments.front());
   return fail(ErrorCode::kNotSymmetric, std::move(what), std::move(segments), pointer);
 }
@@ -55,7 +55,7 @@ Result<void> EdgeOrbits::close(ClosedOrbits& result) {
   for (std::size_t i = 0; i < copies_.size();) {
     std::size_t end = i + 1;
     while (end < copies_.size() && copies_[end].orbit() == copies_[i].orbit()) ++end;
-    if (auto ok = check_orbit(i, end); !ok) return ok;
+    SYMCELL_TRY(check_orbit(i, end));
     add_segment(i, result);
     i = end;
   }
@@ -85,7 +85,7 @@ Result<void> EdgeOrbits::check_orbit(std::size_t begin, std::size_t end) const {
                          {first.segment});
   }
   for (std::size_t i = begin + 1; i < end; ++i) {
-    if (auto ok = check_alike(first, copies_[i]); !ok) return ok;
+    SYMCELL_TRY(check_alike(first, copies_[i]));
   }
   return {};
 }

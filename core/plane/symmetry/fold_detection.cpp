@@ -189,7 +189,7 @@ Result<std::vector<FoldFit>> FoldDetector::ladder(ExecutionContext& context) con
   const double arbitrary = arbitrary_angle_error();
   std::vector<FoldFit> fits;
   for (const std::int32_t n : candidates(arbitrary <= 4 * tolerance_)) {
-    if (auto ok = context.check(); !ok) return tl::unexpected(ok.error());
+    SYMCELL_TRY(context.check());
     if (passes_quickly(n)) fits.push_back(fit(n));
   }
   judge(fits, arbitrary);

@@ -63,10 +63,10 @@ Result<PslgInspection> inspect_pslg(const Pslg& pslg,
                                     const MeshOptions& options,
                                     ExecutionContext& context) {
   auto subdomains = make_subdomains(pslg, context);
-  if (!subdomains) return tl::unexpected(subdomains.error());
+  if (!subdomains) return error_of(subdomains);
   std::vector<FoldFit> ladder;
   const auto symmetric = symmetrise_subdomains(pslg, *subdomains, options, &ladder, context);
-  if (!symmetric) return tl::unexpected(symmetric.error());
+  if (!symmetric) return error_of(symmetric);
 
   const PreparedPslg prepared = prepare_pslg(pslg, *subdomains, options.ignore_markers);
   PslgInspection result;

@@ -14,7 +14,7 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-tl::unexpected<Error> degenerate(const std::string& what) {
+Failure degenerate(const std::string& what) {
   return fail(ErrorCode::kNotSymmetric,
               what +
                   " once the vertices are moved to symmetric places; lower the symmetry tolerance, "
@@ -170,14 +170,14 @@ Result<void> check_and_seed(ClosedOrbits& closed, ExecutionContext& context) {
     const bool geometric = error.code == ErrorCode::kSelfIntersection ||
                            error.code == ErrorCode::kOverlappingSegments ||
                            error.code == ErrorCode::kDuplicateVertices;
-    if (!geometric) return tl::unexpected(error);
+    if (!geometric) return fail(error);
     return degenerate("segments cross, overlap or shrink to nothing");
   }
   if (map->cuts > 0 || map->pieces.size() != lifted.segments.size()) {
     return degenerate("a vertex comes to lie on a segment");
   }
   const auto labels = face_labels(lifted, *map, closed.sides);
-  if (!labels) return tl::unexpected(labels.error());
+  if (!labels) return error_of(labels);
   Seeding seeding(lifted, *map, *labels);
   seeding.run(closed.pslg);
   return {};

@@ -44,8 +44,8 @@ class Closure {
     choose_sector();
     assign_orbits();
     average();
-    if (auto ok = cut_edges(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = close_edges(); !ok) return tl::unexpected(ok.error());
+    SYMCELL_TRY(cut_edges());
+    SYMCELL_TRY(close_edges());
     if (error_ > request_.tolerance) {
       return not_symmetric("moving the vertices into symmetric places takes " + relative(error_),
                            worst_);
@@ -77,14 +77,14 @@ class Closure {
     worst_ = point;
   }
 
-  [[nodiscard]] tl::unexpected<Error> not_symmetric(std::string what, std::int32_t point) const {
+  [[nodiscard]] Failure not_symmetric(std::string what, std::int32_t point) const {
     const std::int32_t vertex = point < 0 ? -1 : prepared_.input_vertex[at(point)];
     Error error{ErrorCode::kNotSymmetric, std::move(what), {}, {}};
     if (vertex >= 0) {
       error.elements = {vertex};
       error.pointer = "/vertices/" + std::to_string(vertex);
     }
-    return tl::unexpected(std::move(error));
+    return fail(std::move(error));
   }
 
   // The sector's first ray: the direction, modulo one sector, that the fewest edges cross, so that
@@ -226,13 +226,13 @@ class Closure {
     const auto orbit_count = static_cast<std::int32_t>(result_.pslg.orbit_points.size());
     for (std::int32_t o = 0; o < orbit_count; ++o) {
       if ((o & 0xff) == 0) {
-        if (auto ok = context_.check(); !ok) return ok;
+        SYMCELL_TRY(context_.check());
       }
       if (is_centre(o)) {
         cut_at({o, 0}, -1);
         continue;
       }
-      if (auto ok = cut_at_orbit(o); !ok) return ok;
+      SYMCELL_TRY(cut_at_orbit(o));
     }
     if (fold() > 1 && result_.pslg.centre_orbit < 0 &&
         index_.nearest(request_.center, request_.link).segment >= 0) {
@@ -315,7 +315,7 @@ class Closure {
     orbits.reserve(prepared_.edges.size() + cuts_.size());
     for (std::size_t e = 0; e < prepared_.edges.size(); ++e) {
       if ((e & 0xfff) == 0) {
-        if (auto ok = context_.check(); !ok) return ok;
+        SYMCELL_TRY(context_.check());
       }
       const PreparedEdge& edge = prepared_.edges[e];
       OrbitVertex from = vertex_[at(edge.a)];

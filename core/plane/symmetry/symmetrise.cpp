@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/limits.hpp"
 #include "core/geometry/segment_index.hpp"
 #include "core/model/describe.hpp"
-#include "core/model/limits.hpp"
 #include "core/plane/symmetry/fold_detection.hpp"
 #include "core/plane/symmetry/lifted_check.hpp"
 #include "core/plane/symmetry/orbit_closure.hpp"
@@ -75,7 +75,7 @@ class Symmetriser {
     if (options_.fold == 1) return without_symmetry();
     if (options_.fold) return declared(*options_.fold);
     auto fits = detector_.ladder(context_);
-    if (!fits) return tl::unexpected(fits.error());
+    if (!fits) return error_of(fits);
     if (ladder != nullptr) *ladder = *fits;
     for (auto fit = fits->rbegin(); fit != fits->rend(); ++fit) {
       if (!fit->kept) continue;
@@ -118,7 +118,7 @@ class Symmetriser {
       message += error.message;
     }
     error.message = message + "; correct the model, the fold or the centre, or raise the tolerance";
-    return tl::unexpected(std::move(error));
+    return fail(std::move(error));
   }
 
   // Links copies as tightly as succeeds: a wide link would merge vertices that only lie close.
@@ -133,7 +133,7 @@ class Symmetriser {
 
   Result<SymmetricPslg> close_linked(ClosureRequest request) {
     auto closed = close_orbits(prepared_, index_, request, context_);
-    if (!closed) return tl::unexpected(closed.error());
+    if (!closed) return error_of(closed);
     const bool settled = length(closed->center_shift) <= 1e-3 * prepared_.resolution();
     if (request.fold > 1 && !options_.center && !settled) {
       ClosureRequest moved = request;
@@ -147,7 +147,7 @@ class Symmetriser {
     result.diameter = prepared_.diameter;
     result.center_detected = !options_.center;
     copy_seeds(result);
-    if (auto ok = check_and_seed(*closed, context_); !ok) return tl::unexpected(ok.error());
+    SYMCELL_TRY(check_and_seed(*closed, context_));
     return std::move(result);
   }
 
@@ -175,7 +175,7 @@ Result<SymmetricPslg> symmetrise_subdomains(const Pslg& pslg,
                                             const MeshOptions& options,
                                             std::vector<FoldFit>* ladder,
                                             ExecutionContext& context) {
-  if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
+  SYMCELL_TRY(check_options(options));
   const PreparedPslg prepared = prepare_pslg(pslg, subdomains, options.ignore_markers);
   if (prepared.edges.empty()) {
     return fail(ErrorCode::kDegenerateGeometry, "the segments enclose nothing to mesh");
@@ -187,10 +187,10 @@ Result<SymmetricPslg> symmetrise_subdomains(const Pslg& pslg,
 Result<SymmetricPslg> symmetrise(const Pslg& pslg,
                                  const MeshOptions& options,
                                  ExecutionContext& context) {
-  if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
+  SYMCELL_TRY(check_options(options));
   context.report(Phase::kSymmetry, 0.01);
   const auto subdomains = make_subdomains(pslg, context);
-  if (!subdomains) return tl::unexpected(subdomains.error());
+  if (!subdomains) return error_of(subdomains);
   return symmetrise_subdomains(pslg, *subdomains, options, nullptr, context);
 }
 

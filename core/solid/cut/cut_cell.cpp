@@ -141,14 +141,12 @@ Result<CellCut> cut_cell(const QuotientTetrahedralization& mesh, ExecutionContex
   FaceWeights weights;
   std::vector<CellFlaw> flaws;
   for (int round = 0; round < kRounds; ++round) {
-    if (auto ok = minimise_bound(least, context, weights); !ok) {
-      return tl::unexpected<Error>(ok.error());
-    }
+    SYMCELL_TRY(minimise_bound(least, context, weights));
     Representatives cell = least;
     const auto usable = repair_cell(cell, context);
-    if (!usable) return tl::unexpected<Error>(usable.error());
+    if (!usable) return error_of(usable);
     if (*usable) {
-      if (auto ok = avoid_chains(cell, context); !ok) return tl::unexpected<Error>(ok.error());
+      SYMCELL_TRY(avoid_chains(cell, context));
       PieceGatherer(cell).run();
       return as_cut(cell);
     }

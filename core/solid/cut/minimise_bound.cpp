@@ -35,9 +35,8 @@ class BoundMinimiser {
       if (reached_.empty()) return {};  // all excess is gone
       if (active_.empty()) {
         raise_source_side();
-      } else if (auto ok = pass_on(); !ok) {
-        return ok;
-      }
+      } else
+        SYMCELL_TRY(pass_on());
     }
   }
 
@@ -109,7 +108,7 @@ class BoundMinimiser {
       active_.clear();
       for (const TetId t : batch) {
         if (++steps % kStepsBetweenChecks == 0) {
-          if (auto ok = context_.check(); !ok) return ok;
+          SYMCELL_TRY(context_.check());
         }
         relabels += discharge(t);
         if (relabels > budget) return {};

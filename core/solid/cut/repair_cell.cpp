@@ -42,7 +42,7 @@ class CellRepairer {
       changed_ = false;
       join_pieces();
       const auto left = repair_vertices();
-      if (!left) return tl::unexpected<Error>(left.error());
+      if (!left) return error_of(left);
       if (!*left && find_loose_pieces(cell_).empty()) return true;
       if (!changed_) return false;
     }
@@ -54,7 +54,7 @@ class CellRepairer {
     std::size_t steps = 0;
     for (const VertexId v : bound_vertices(cell_)) {
       if (++steps % kVerticesBetweenChecks == 0) {
-        if (auto ok = context_.check(); !ok) return tl::unexpected<Error>(ok.error());
+        SYMCELL_TRY(context_.check());
       }
       if (chain_at(v) == 0) continue;
       const MoveSet best = best_move(
@@ -116,7 +116,7 @@ class CellRepairer {
     bool left = false;
     while (!queue.empty()) {
       if (++steps % kVerticesBetweenChecks == 0) {
-        if (auto ok = context_.check(); !ok) return tl::unexpected<Error>(ok.error());
+        SYMCELL_TRY(context_.check());
       }
       const VertexId v = queue.front();
       queue.pop_front();

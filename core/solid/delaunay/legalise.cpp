@@ -27,9 +27,7 @@ class Legaliser {
     const std::uint64_t most = kMaxFlipsATet * (mesh_.tet_count() + 1);
     for (std::uint64_t step = 0; !todo_.empty() && flips_ < most; ++step) {
       if (step % kCheckEvery == 0) {
-        if (auto ok = context_.check(mesh_.tet_count()); !ok) {
-          return tl::unexpected<Error>(ok.error());
-        }
+        SYMCELL_TRY(context_.check(mesh_.tet_count()));
       }
       const Item item = todo_.back();
       todo_.pop_back();

@@ -71,7 +71,7 @@ Result<void> Improver::work_on_worst(double goal, Means means) {
   const std::uint64_t check_every = detours_left_ > 0 ? kCheckEveryDetours : kCheckEvery;
   for (std::uint64_t step = 0; !queue_.empty() && step < most; ++step) {
     if (step % check_every == 0) {
-      if (auto ok = context_.check(mesh_.tet_count()); !ok) return ok;
+      SYMCELL_TRY(context_.check(mesh_.tet_count()));
     }
     const Entry e = queue_.top();
     queue_.pop();
@@ -123,7 +123,7 @@ Result<void> Improver::mend(double goal, int passes) {
   given_up_.clear();
   for (int pass = 0; pass < passes; ++pass) {
     const std::uint64_t before = surgery_.edits();
-    if (auto ok = work_on_worst(goal, Means::kAll); !ok) return ok;
+    SYMCELL_TRY(work_on_worst(goal, Means::kAll));
     if (surgery_.edits() == before) break;
   }
   return {};
@@ -133,7 +133,7 @@ Result<void> Improver::smooth_all() {
   std::uint64_t step = 0;
   for (const VertexId v : vertices_in_order()) {
     if (step++ % kCheckEvery == 0) {
-      if (auto ok = context_.check(mesh_.tet_count()); !ok) return ok;
+      SYMCELL_TRY(context_.check(mesh_.tet_count()));
     }
     static_cast<void>(surgery_.smooth(v));
   }
@@ -202,7 +202,7 @@ Result<void> Improver::coarsen(double floor) {
   std::uint64_t step = 0;
   for (const VertexId v : vertices_in_order()) {
     if (step++ % kCheckEvery == 0) {
-      if (auto ok = context_.check(mesh_.tet_count()); !ok) return ok;
+      SYMCELL_TRY(context_.check(mesh_.tet_count()));
     }
     if (mesh_.kind(v) == VertexKind::kDeleted) continue;
     static_cast<void>(merge(v, floor, Surgery::Bounds::kKept));
@@ -212,11 +212,11 @@ Result<void> Improver::coarsen(double floor) {
 
 Result<void> Improver::round(double goal) {
   // Flips alone: merges change most of the rest, and moves before them are wasted.
-  if (auto ok = work_on_worst(goal, Means::kFlips); !ok) return ok;
+  SYMCELL_TRY(work_on_worst(goal, Means::kFlips));
   surgery_.allow_excess(kCoarseningExcess);
-  if (auto ok = coarsen(goal); !ok) return ok;
+  SYMCELL_TRY(coarsen(goal));
   surgery_.allow_excess(1);
-  if (auto ok = smooth_all(); !ok) return ok;
+  SYMCELL_TRY(smooth_all());
   return mend(goal);
 }
 

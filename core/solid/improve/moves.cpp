@@ -55,7 +55,8 @@ bool Surgery::smooth(VertexId v) {
         if (t.facet[f] == kNoFacet || t.facet[f] != mesh_.parent(v)) continue;
         const auto& c = star_tets_[n];
         bool at = false;
-        for (const std::uint32_t k : kFaceCorners[f]) at = at || (c.c[k].orbit == v && c.c[k].exponent == 0);
+        for (const std::uint32_t k : kFaceCorners[f])
+          at = at || (c.c[k].orbit == v && c.c[k].exponent == 0);
         if (!at) continue;
         const Point3 m = cross(c.p[kFaceCorners[f][1]] - c.p[kFaceCorners[f][0]],
                                c.p[kFaceCorners[f][2]] - c.p[kFaceCorners[f][0]]);

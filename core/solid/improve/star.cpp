@@ -115,7 +115,8 @@ std::span<const Surgery::Neighbour> Surgery::neighbours(VertexId v) {
   }
   std::sort(neighbours_.begin(), neighbours_.end(), [](const Neighbour& a, const Neighbour& b) {
     if (a.squared != b.squared) return a.squared < b.squared;
-    return a.corner.orbit != b.corner.orbit ? a.corner.orbit < b.corner.orbit : a.corner.exponent < b.corner.exponent;
+    return a.corner.orbit != b.corner.orbit ? a.corner.orbit < b.corner.orbit
+                                            : a.corner.exponent < b.corner.exponent;
   });
   return neighbours_;
 }

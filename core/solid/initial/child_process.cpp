@@ -184,7 +184,7 @@ void ChildOutput::write(std::span<const std::byte> bytes) {
 Result<ChildResult> run_in_child(const std::function<bool(ChildOutput&)>& body,
                                  const ChildLimits& limits,
                                  ExecutionContext& context) {
-  if (auto ok = context.check(); !ok) return tl::unexpected<Error>(ok.error());
+  SYMCELL_TRY(context.check());
   const SharedFile file;
   if (file.descriptor() < 0) {
     return fail(ErrorCode::kInternal, "no memory for the result of a child process");
@@ -197,7 +197,7 @@ Result<ChildResult> run_in_child(const std::function<bool(ChildOutput&)>& body,
   Child child(pid);
   timespec pause{0, kFirstPauseNs};
   while (!child.ended()) {
-    if (auto ok = context.check(); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(context.check());
     nanosleep(&pause, nullptr);
     pause.tv_nsec = std::min(kLongestPauseNs, pause.tv_nsec + pause.tv_nsec / 4);
   }

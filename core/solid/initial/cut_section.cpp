@@ -27,7 +27,7 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-tl::unexpected<Error> failed(const std::string& why) {
+Failure failed(const std::string& why) {
   return fail(ErrorCode::kTetrahedralizationFailed, "section of the solid with the cut: " + why);
 }
 
@@ -70,12 +70,12 @@ class SectionTriangulation {
       if (image[at(a)] < 0 || image[at(b)] < 0) {
         return failed("vertex " + std::to_string(image[at(a)] < 0 ? a : b) + " has no image");
       }
-      if (auto ok = insert_constraint(a, b); !ok) return ok;
+      SYMCELL_TRY(insert_constraint(a, b));
     }
     std::sort(axis.begin(), axis.end(),
               [&](std::int32_t a, std::int32_t b) { return height(a) < height(b); });
     for (std::size_t i = 0; i + 1 < axis.size(); ++i) {
-      if (auto ok = insert_constraint(axis[i], axis[i + 1]); !ok) return ok;
+      SYMCELL_TRY(insert_constraint(axis[i], axis[i + 1]));
     }
     return {};
   }
@@ -135,9 +135,7 @@ Result<CutSection> make_cut_section(const Sector& sector) {
   section.image = images_of(sector);
   try {
     SectionTriangulation triangulation(sector);
-    if (auto ok = triangulation.insert(section.image); !ok) {
-      return tl::unexpected<Error>(ok.error());
-    }
+    SYMCELL_TRY(triangulation.insert(section.image));
     section.faces = triangulation.enclosed_faces();
   } catch (const std::exception&) {
     return failed("its curves cross");

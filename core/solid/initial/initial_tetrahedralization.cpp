@@ -24,7 +24,7 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-tl::unexpected<Error> failed(const std::string& why) {
+Failure failed(const std::string& why) {
   return fail(ErrorCode::kTetrahedralizationFailed, "gluing the sector to its images: " + why);
 }
 
@@ -46,11 +46,11 @@ class Gluer {
 
   Result<InitialTetrahedralization> glue() && {
     add_vertices();
-    if (auto ok = add_tetrahedra(); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(add_tetrahedra());
     release_unused_vertices();
     add_segments();
-    if (auto ok = check(); !ok) return tl::unexpected<Error>(ok.error());
-    if (auto ok = measure_cover(); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(check());
+    SYMCELL_TRY(measure_cover());
     return std::move(result_);
   }
 
@@ -221,11 +221,11 @@ class Gluer {
 Result<InitialTetrahedralization> tetrahedralize_sector(const Sector& sector,
                                                         ExecutionContext& context) {
   auto section = initial::make_cut_section(sector);
-  if (!section) return tl::unexpected<Error>(section.error());
+  if (!section) return error_of(section);
   auto mesh = initial::make_sector_mesh(sector, *section, context);
-  if (!mesh) return tl::unexpected<Error>(mesh.error());
+  if (!mesh) return error_of(mesh);
   auto parts = initial::find_sector_parts(sector, *section, *mesh, context);
-  if (!parts) return tl::unexpected<Error>(parts.error());
+  if (!parts) return error_of(parts);
   return Gluer(sector, *mesh, *parts).glue();
 }
 

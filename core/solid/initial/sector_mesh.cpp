@@ -15,7 +15,7 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-tl::unexpected<Error> failed(const std::string& why) {
+Failure failed(const std::string& why) {
   return fail(ErrorCode::kTetrahedralizationFailed, "tetrahedralization of the sector: " + why);
 }
 
@@ -150,7 +150,7 @@ Result<SectorMesh> checked_mesh(const TriangleComplex& complex, Tetrahedralizati
   SectorMesh mesh;
   mesh.points = std::move(result.points);
   mesh.tets = std::move(result.tets);
-  if (auto ok = link(complex.triangles, mesh); !ok) return tl::unexpected<Error>(ok.error());
+  SYMCELL_TRY(link(complex.triangles, mesh));
   if (!has_edges(mesh, complex.edges)) return failed("an edge was lost");
   return mesh;
 }
@@ -161,7 +161,7 @@ Result<SectorMesh> make_sector_mesh(const Sector& sector,
                                     const CutSection& section,
                                     ExecutionContext& context) {
   const TriangleComplex complex = make_complex(sector, section);
-  tl::unexpected<Error> last = failed("not tried");
+  Failure last = failed("not tried");
   for (const auto& [switches, order] : kAttempts) {
     TetgenOptions options;
     options.switches = switches;
@@ -174,9 +174,9 @@ Result<SectorMesh> make_sector_mesh(const Sector& sector,
         mesh->section_faces = static_cast<std::int32_t>(section.faces.size());
         return mesh;
       }
-      last = tl::unexpected<Error>(mesh.error());
+      last = error_of(mesh);
     } else {
-      last = tl::unexpected<Error>(result.error());
+      last = error_of(result);
     }
     if (last.value().code != ErrorCode::kTetrahedralizationFailed) break;
   }

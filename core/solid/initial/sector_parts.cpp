@@ -67,18 +67,16 @@ class PartFinder {
 
   Result<SectorParts> find(ExecutionContext& context) {
     flood();
-    if (auto ok = context.check(); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(context.check());
     if (sector_.nesting_decides) {
-      if (auto ok = material_by_nesting(); !ok) return tl::unexpected<Error>(ok.error());
+      SYMCELL_TRY(material_by_nesting());
     } else {
       for (Part& p : parts_) p.material = !p.outside;
     }
-    if (auto ok = apply_holes(context); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(apply_holes(context));
     SectorParts result;
     result.subdomains.emplace_back();
-    if (auto ok = apply_regions(context, result.subdomains); !ok) {
-      return tl::unexpected<Error>(ok.error());
-    }
+    SYMCELL_TRY(apply_regions(context, result.subdomains));
     bool any = false;
     for (TetId t = 0; t < mesh_.tets.size(); ++t) {
       const Part& p = parts_[at(part_[t])];
@@ -245,7 +243,7 @@ class PartFinder {
 
   Result<void> apply_holes(ExecutionContext& context) {
     for (std::size_t h = 0; h < sector_.holes.size(); ++h) {
-      if (auto ok = context.check(); !ok) return ok;
+      SYMCELL_TRY(context.check());
       const auto t = locate(sector_.holes[h]);
       if (!t || parts_[at(part_[*t])].outside) return unreachable("holes", h);
       Part& part = parts_[at(part_[*t])];
@@ -257,7 +255,7 @@ class PartFinder {
 
   Result<void> apply_regions(ExecutionContext& context, std::vector<Subdomain>& subdomains) {
     for (std::size_t r = 0; r < sector_.regions.size(); ++r) {
-      if (auto ok = context.check(); !ok) return ok;
+      SYMCELL_TRY(context.check());
       const SectorRegion& region = sector_.regions[r];
       const auto t = locate(region.point);
       if (!t || (!parts_[at(part_[*t])].material && parts_[at(part_[*t])].hole < 0)) {
@@ -293,15 +291,15 @@ class PartFinder {
     return static_cast<std::int32_t>(subdomains.size() - 1);
   }
 
-  [[nodiscard]] static tl::unexpected<Error> unreachable(const std::string& list, std::size_t i) {
+  [[nodiscard]] static Failure unreachable(const std::string& list, std::size_t i) {
     return fail(ErrorCode::kUnreachableSeed,
                 "the seed " + list + "[" + std::to_string(i) +
                     "] lies outside the model or on its boundary; move it into the part it means",
                 {static_cast<std::int64_t>(i)}, "/" + list + "/" + std::to_string(i));
   }
-  [[nodiscard]] static tl::unexpected<Error> conflicting(const std::string& list,
-                                                         std::int32_t first,
-                                                         std::size_t region) {
+  [[nodiscard]] static Failure conflicting(const std::string& list,
+                                           std::int32_t first,
+                                           std::size_t region) {
     return fail(ErrorCode::kConflictingSeeds,
                 list + "[" + std::to_string(first) + "] and regions[" + std::to_string(region) +
                     "] lie in the same part, with no facet between; keep one of them or close the "

@@ -61,13 +61,13 @@ Result<void> Starts::cut_one_more(ExecutionContext& context) {
     return {};
   }
   last_ = sector.error();
-  return is_limit(last_.code) ? tl::unexpected<Error>(last_) : Result<void>{};
+  return is_limit(last_.code) ? fail(last_) : Result<void>{};
 }
 
 Result<InitialTetrahedralization> Starts::next(ExecutionContext& context) {
   if (next_ == 0) {
     while (is_worth_comparing()) {
-      if (auto ok = cut_one_more(context); !ok) return tl::unexpected<Error>(ok.error());
+      SYMCELL_TRY(cut_one_more(context));
       const bool good = !sectors_.empty() && sectors_.back().narrow_corners == 0;
       if (good && (effort_ >= kEnoughCompared || cuts_are_alike())) break;
     }
@@ -81,7 +81,7 @@ Result<InitialTetrahedralization> Starts::next(ExecutionContext& context) {
   }
   while (has_next()) {
     if (sectors_.empty()) {
-      if (auto ok = cut_one_more(context); !ok) return tl::unexpected<Error>(ok.error());
+      SYMCELL_TRY(cut_one_more(context));
       continue;
     }
     const Sector sector = std::move(sectors_.back());

@@ -77,7 +77,7 @@ bool tetgen_body(const TriangleComplex& complex,
   return true;
 }
 
-tl::unexpected<Error> failed(const std::string& why) {
+Failure failed(const std::string& why) {
   return fail(ErrorCode::kTetrahedralizationFailed, "tetrahedralization of the sector: " + why);
 }
 
@@ -152,7 +152,7 @@ Result<Tetrahedralization> run_as_given(const TriangleComplex& complex,
       tetgen_limits(complex.points.size() + complex.triangles.size() + complex.edges.size());
   auto child = run_in_child(
       [&](ChildOutput& output) { return tetgen_body(complex, options, output); }, limits, context);
-  if (!child) return tl::unexpected<Error>(child.error());
+  if (!child) return error_of(child);
   switch (child->failure) {
     case ChildFailure::kNone: return parse(complex, child->bytes);
     case ChildFailure::kRefused: return failed("refused by the tetrahedralizer");

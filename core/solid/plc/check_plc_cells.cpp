@@ -41,7 +41,7 @@ Result<void> check_enclosure(const PlcComplex& complex, const PlcCells& cells) {
 }  // namespace
 
 Result<void> check_cells(const PlcComplex& complex, const PlcCells& cells) {
-  if (auto ok = check_enclosure(complex, cells); !ok) return ok;
+  SYMCELL_TRY(check_enclosure(complex, cells));
   const auto unreachable = [](const std::string& seed, std::size_t i, const char* list) {
     return fail(ErrorCode::kUnreachableSeed,
                 seed +

@@ -33,12 +33,12 @@ class Conformer {
         tree_(complex.points) {}
 
   Result<void> run() {
-    if (auto ok = find_splits(); !ok) return ok;
+    SYMCELL_TRY(find_splits());
     touched_.assign(complex_.facets.size(), 0);
     if (any_split_) apply_splits();
     for (std::size_t f = 0; f < complex_.facets.size(); ++f) {
       if (f % 64 == 0) {
-        if (auto ok = context_.check(); !ok) return ok;
+        SYMCELL_TRY(context_.check());
       }
       find_points(f);
     }
@@ -48,7 +48,7 @@ class Conformer {
     for (std::size_t f = 0; f < complex_.facets.size(); ++f) {
       if (touched_[f] == 0) continue;
       any = true;
-      if (auto ok = triangulate(complex_.facets[f]); !ok) return ok;
+      SYMCELL_TRY(triangulate(complex_.facets[f]));
     }
     if (any) collect_facet_edges(complex_);
     return {};
@@ -60,7 +60,7 @@ class Conformer {
     splits_.resize(complex_.edges.size());
     for (std::size_t e = 0; e < complex_.edges.size(); ++e) {
       if (e % 256 == 0) {
-        if (auto ok = context_.check(); !ok) return ok;
+        SYMCELL_TRY(context_.check());
       }
       const ComplexEdge& edge = complex_.edges[e];
       const Point3 a = complex_.points[at(edge.a)];

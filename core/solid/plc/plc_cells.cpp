@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/union_find.hpp"
 #include "core/geometry/box_tree.hpp"
 #include "core/geometry/indexed_surface.hpp"
 #include "core/geometry/predicates.hpp"
@@ -15,24 +16,6 @@ namespace {
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::int32_t root(std::int32_t i) {
-    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
-    return i;
-  }
-  // The smaller root stays, so that numbering does not depend on the order of calls.
-  void join(std::int32_t i, std::int32_t j) {
-    i = root(i);
-    j = root(j);
-    parent_[at(std::max(i, j))] = std::min(i, j);
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
 
 // Turns the model so that no facet stands upright and no two vertices above each other but by rare
 // accident: rays along z then meet few degenerate cases. An arbitrary rotation.
@@ -60,10 +43,10 @@ class CellFinder {
 
   Result<PlcCells> run() {
     join_round_edges();
-    if (auto ok = context_.check(); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(context_.check());
     measure_shells();
     build_tree();
-    if (auto ok = unite_shells(); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(unite_shells());
     number_cells();
     place_seeds();
     return std::move(result_);
@@ -208,7 +191,7 @@ class CellFinder {
       const std::int32_t shell = sides_->root(side);
       if (anchored[at(cells_->root(shell))] != 0) continue;
       if (++steps % 64 == 0) {
-        if (auto ok = context_.check(); !ok) return ok;
+        SYMCELL_TRY(context_.check());
       }
       const std::int32_t met = meet_above(side);
       if (met < 0) continue;

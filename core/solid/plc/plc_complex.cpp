@@ -136,7 +136,7 @@ Result<PlcComplex> make_plc_complex(const Plc& plc, ExecutionContext& context) {
   measure_box(complex);
   for (std::size_t f = 0; f < plc.facets.size(); ++f) {
     if (f % 64 == 0) {
-      if (auto ok = context.check(); !ok) return tl::unexpected(ok.error());
+      SYMCELL_TRY(context.check());
     }
     ComplexFacet facet;
     facet.graph.normal = facet_normal(plc, plc.facets[f]);
@@ -151,7 +151,7 @@ Result<PlcComplex> make_plc_complex(const Plc& plc, ExecutionContext& context) {
       error.message = "facet " + std::to_string(f) + ": " + error.message + "; mend its polygons";
       error.elements.insert(error.elements.begin(), static_cast<std::int64_t>(f));
       error.pointer = "/facets/" + std::to_string(f);
-      return tl::unexpected(error);
+      return fail(error);
     }
     facet.triangles = std::move(*triangles);
     complex.facets.push_back(std::move(facet));

@@ -67,9 +67,9 @@ class Checker {
 
   Result<void> run() {
     auto pairs = self_intersections(surface_, 1, context_);
-    if (!pairs) return tl::unexpected<Error>(pairs.error());
+    if (!pairs) return error_of(pairs);
     if (!pairs->empty()) return facets_meet(pairs->front().first, pairs->front().second);
-    if (auto ok = check_common_diagonals(); !ok) return ok;
+    SYMCELL_TRY(check_common_diagonals());
     if (loose_.empty()) return {};
     return check_loose_edges();
   }

@@ -6,8 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/geometry/limits.hpp"
 #include "core/model/describe.hpp"
-#include "core/model/limits.hpp"
 #include "core/solid/plc/conform_plc.hpp"
 #include "core/solid/plc/plc_intersections.hpp"
 
@@ -38,10 +38,10 @@ Result<void> check_size(const Plc& plc) {
                                           " are more than the limit of " + std::to_string(limit) +
                                           "; simplify the model");
   };
-  if (auto ok = check("vertices", plc.vertices.size(), kMaxPlcVertices); !ok) return ok;
-  if (auto ok = check("corners of facets", corners, kMaxPlcCorners); !ok) return ok;
-  if (auto ok = check("segments", plc.segments.size(), kMaxPlcCorners); !ok) return ok;
-  if (auto ok = check("holes", plc.holes.size(), kMaxPlcVertices); !ok) return ok;
+  SYMCELL_TRY(check("vertices", plc.vertices.size(), kMaxPlcVertices));
+  SYMCELL_TRY(check("corners of facets", corners, kMaxPlcCorners));
+  SYMCELL_TRY(check("segments", plc.segments.size(), kMaxPlcCorners));
+  SYMCELL_TRY(check("holes", plc.holes.size(), kMaxPlcVertices));
   return check("regions", plc.regions.size(), kMaxPlcVertices);
 }
 
@@ -65,35 +65,23 @@ Result<void> check_point(Point3 p,
 
 Result<void> check_points(const Plc& plc) {
   for (std::size_t i = 0; i < plc.vertices.size(); ++i) {
-    if (auto ok = check_point(plc.vertices[i], "vertex " + std::to_string(i),
-                              static_cast<std::int64_t>(i), pointer_to("vertices", i));
-        !ok) {
-      return ok;
-    }
+    SYMCELL_TRY(check_point(plc.vertices[i], "vertex " + std::to_string(i),
+                            static_cast<std::int64_t>(i), pointer_to("vertices", i)));
   }
   for (std::size_t i = 0; i < plc.holes.size(); ++i) {
-    if (auto ok = check_point(plc.holes[i], "hole seed " + std::to_string(i),
-                              static_cast<std::int64_t>(i), pointer_to("holes", i));
-        !ok) {
-      return ok;
-    }
+    SYMCELL_TRY(check_point(plc.holes[i], "hole seed " + std::to_string(i),
+                            static_cast<std::int64_t>(i), pointer_to("holes", i)));
   }
   for (std::size_t i = 0; i < plc.regions.size(); ++i) {
-    if (auto ok = check_point(plc.regions[i].point, "region seed " + std::to_string(i),
-                              static_cast<std::int64_t>(i), pointer_to("regions", i));
-        !ok) {
-      return ok;
-    }
+    SYMCELL_TRY(check_point(plc.regions[i].point, "region seed " + std::to_string(i),
+                            static_cast<std::int64_t>(i), pointer_to("regions", i)));
   }
   for (std::size_t f = 0; f < plc.facets.size(); ++f) {
     for (std::size_t i = 0; i < plc.facets[f].holes.size(); ++i) {
-      if (auto ok = check_point(
-              plc.facets[f].holes[i],
-              "hole point " + std::to_string(i) + " of facet " + std::to_string(f),
-              static_cast<std::int64_t>(f), pointer_to("facets", f) + pointer_to("holes", i));
-          !ok) {
-        return ok;
-      }
+      SYMCELL_TRY(check_point(plc.facets[f].holes[i],
+                              "hole point " + std::to_string(i) + " of facet " + std::to_string(f),
+                              static_cast<std::int64_t>(f),
+                              pointer_to("facets", f) + pointer_to("holes", i)));
     }
   }
   return {};
@@ -116,21 +104,15 @@ Result<void> check_indices(const Plc& plc) {
   for (std::size_t f = 0; f < plc.facets.size(); ++f) {
     for (std::size_t p = 0; p < plc.facets[f].polygons.size(); ++p) {
       for (const std::int32_t v : plc.facets[f].polygons[p]) {
-        if (auto ok = check_index(plc, v, "facet " + std::to_string(f), f,
-                                  pointer_to("facets", f) + pointer_to("polygons", p));
-            !ok) {
-          return ok;
-        }
+        SYMCELL_TRY(check_index(plc, v, "facet " + std::to_string(f), f,
+                                pointer_to("facets", f) + pointer_to("polygons", p)));
       }
     }
   }
   for (std::size_t s = 0; s < plc.segments.size(); ++s) {
     for (const std::int32_t v : {plc.segments[s].a, plc.segments[s].b}) {
-      if (auto ok =
-              check_index(plc, v, "segment " + std::to_string(s), s, pointer_to("segments", s));
-          !ok) {
-        return ok;
-      }
+      SYMCELL_TRY(
+          check_index(plc, v, "segment " + std::to_string(s), s, pointer_to("segments", s)));
     }
     if (plc.segments[s].a == plc.segments[s].b) {
       return fail(ErrorCode::kZeroLengthSegment,
@@ -249,26 +231,26 @@ Result<void> check_planar(const Plc& plc, std::size_t f, double diameter) {
 }  // namespace
 
 Result<ValidPlc> validate_plc(const Plc& plc, ExecutionContext& context) {
-  if (auto ok = check_size(plc); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_points(plc); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_indices(plc); !ok) return tl::unexpected(ok.error());
+  SYMCELL_TRY(check_size(plc));
+  SYMCELL_TRY(check_points(plc));
+  SYMCELL_TRY(check_indices(plc));
   const auto diameter = check_extent(plc);
-  if (!diameter) return tl::unexpected(diameter.error());
-  if (auto ok = context.check(); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_duplicates(plc); !ok) return tl::unexpected(ok.error());
+  if (!diameter) return error_of(diameter);
+  SYMCELL_TRY(context.check());
+  SYMCELL_TRY(check_duplicates(plc));
   for (std::size_t f = 0; f < plc.facets.size(); ++f) {
-    if (auto ok = check_planar(plc, f, *diameter); !ok) return tl::unexpected(ok.error());
+    SYMCELL_TRY(check_planar(plc, f, *diameter));
   }
   for (std::size_t f = 0; f < plc.facets.size(); ++f) {
-    if (auto ok = check_area(plc, f); !ok) return tl::unexpected(ok.error());
+    SYMCELL_TRY(check_area(plc, f));
   }
   auto complex = make_plc_complex(plc, context);
-  if (!complex) return tl::unexpected(complex.error());
-  if (auto ok = conform(*complex, context); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_intersections(*complex, context); !ok) return tl::unexpected(ok.error());
+  if (!complex) return error_of(complex);
+  SYMCELL_TRY(conform(*complex, context));
+  SYMCELL_TRY(check_intersections(*complex, context));
   auto cells = find_cells(*complex, context);
-  if (!cells) return tl::unexpected(cells.error());
-  if (auto ok = check_cells(*complex, *cells); !ok) return tl::unexpected(ok.error());
+  if (!cells) return error_of(cells);
+  SYMCELL_TRY(check_cells(*complex, *cells));
   return ValidPlc{std::move(*complex), std::move(*cells)};
 }
 

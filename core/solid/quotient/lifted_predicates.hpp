@@ -71,7 +71,8 @@ template <class... Corners>
   const double bound = size.length * size.length *
                        (internal::kLiftOrientation3Radius * size.radius +
                         internal::kLiftOrientation3Length * size.length);
-  return symcell::internal::decide(-symcell::internal::orientation_3_determinant(a, b, c, d).value, slack * bound);
+  return symcell::internal::decide(-symcell::internal::orientation_3_determinant(a, b, c, d).value,
+                                   slack * bound);
 }
 
 [[nodiscard]] inline Sign certain_in_sphere(
@@ -81,7 +82,8 @@ template <class... Corners>
   const double bound =
       square * square *
       (internal::kLiftInSphereRadius * size.radius + internal::kLiftInSphereLength * size.length);
-  return symcell::internal::decide(-symcell::internal::in_sphere_determinant(a, b, c, d, e).value, slack * bound);
+  return symcell::internal::decide(-symcell::internal::in_sphere_determinant(a, b, c, d, e).value,
+                                   slack * bound);
 }
 
 [[nodiscard]] inline Sign orientation_3(const QuotientTetrahedralization& mesh,

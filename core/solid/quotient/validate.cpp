@@ -39,9 +39,7 @@ class Checker {
   }
 
  private:
-  static tl::unexpected<Error> forward(const Result<void>& r) {
-    return tl::unexpected<Error>(r.error());
-  }
+  static Failure forward(const Result<void>& r) { return error_of(r); }
 
   static Result<void> broken(const char* layer, TetId t, std::size_t i, const char* what) {
     return fail(ErrorCode::kInternal,
@@ -59,7 +57,7 @@ class Checker {
   Result<void> each_tet(const Check& check) {
     for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
       if (!mesh_.alive(t)) continue;
-      if (auto ok = check(t); !ok) return ok;
+      SYMCELL_TRY(check(t));
     }
     return {};
   }

@@ -88,7 +88,7 @@ Result<void> Refiner::run() {
   const double initial = static_cast<double>(queue_.size()) + 1;
   for (std::uint64_t step = 0; !queue_.empty(); ++step) {
     if (step % kCheckEvery == 0) {
-      if (auto ok = context_.check(mesh_.tet_count()); !ok) return ok;
+      SYMCELL_TRY(context_.check(mesh_.tet_count()));
       if (mesh_.tet_count() > most_tets_) {
         return fail(ErrorCode::kElementLimit, "more tetrahedra than are wanted");
       }

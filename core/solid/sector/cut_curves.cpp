@@ -12,7 +12,7 @@ class CurveFinder {
       : patch_(patch), next_lower_(patch.points.size(), -1), next_upper_(patch.points.size(), -1) {}
 
   Result<CutCurves> run() {
-    if (auto ok = collect(); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(collect());
     CutCurves curves;
     if (!follow(next_lower_, curves.lower) || !follow(next_upper_, curves.upper)) {
       return fail(ErrorCode::kInternal, "a curve of the cut ends in the open");

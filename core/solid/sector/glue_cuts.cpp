@@ -36,13 +36,13 @@ class Gluer {
 
   Result<GluedSurface> run() {
     auto curves = find_cut_curves(patch_);
-    if (!curves) return tl::unexpected<Error>(curves.error());
+    if (!curves) return error_of(curves);
     curves_ = std::move(*curves);
-    if (auto ok = pair_curves(); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(pair_curves());
     index_boundary();
     partner_.assign(patch_.points.size(), -1);
     for (std::size_t i = 0; i < curves_.lower.size(); ++i) {
-      if (auto state = context_.check(); !state) return tl::unexpected<Error>(state.error());
+      SYMCELL_TRY(context_.check());
       if (!match(curves_.lower[i], curves_.upper[pair_of_[i]])) {
         return fail(ErrorCode::kInternal, "the curves of the two cuts differ");
       }

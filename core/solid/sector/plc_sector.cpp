@@ -57,9 +57,9 @@ class SectorCutter {
     vertex_index_.assign(2 * sector_.orbit_points.size(), -1);
     for (std::size_t f = 0; f < plc_.facet_orbits.size(); ++f) {
       if (f % 16 == 0) {
-        if (auto ok = context_.check(); !ok) return tl::unexpected(ok.error());
+        SYMCELL_TRY(context_.check());
       }
-      if (auto ok = cut_facet(static_cast<std::int32_t>(f)); !ok) return tl::unexpected(ok.error());
+      SYMCELL_TRY(cut_facet(static_cast<std::int32_t>(f)));
     }
     add_edges();
     add_lone_points();

@@ -14,7 +14,7 @@ class SectorBuilder {
 
   Result<Sector> run() {
     auto neighbours = find_neighbours(s_);
-    if (!neighbours) return tl::unexpected<Error>(neighbours.error());
+    if (!neighbours) return error_of(neighbours);
     neighbours_ = std::move(*neighbours);
     sector_.fold = s_.fold;
     sector_.start_angle = s_.start_angle;

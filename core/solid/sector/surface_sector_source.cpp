@@ -262,19 +262,16 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
   std::size_t made = 0;
   for (const double share : kImproveShares) {
     QuotientSurface improved = given;
-    if (auto done = improve_surface(improved, share * candidate.tolerance, flatness, context);
-        !done) {
-      return tl::unexpected<Error>(done.error());
-    }
+    SYMCELL_TRY(improve_surface(improved, share * candidate.tolerance, flatness, context));
     const SectorShape shape = shape_of(improved);
     ++taken;
     made += improved.triangles.size();
     if (!best || shape.better_than(*best)) {
       if (auto same = check_shape(improved, candidate.shell_share, context); !same) {
-        if (auto state = context.check(); !state) return tl::unexpected<Error>(state.error());
+        SYMCELL_TRY(context.check());
         // A cut that is off before anything is improved is off at every share.
         if (last.message.empty() && !check_shape(given, candidate.shell_share, context)) {
-          return tl::unexpected(same.error());
+          return error_of(same);
         }
         last = same.error();
         --taken;
@@ -286,7 +283,7 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
     if (!best->many_thin() && (best->narrow == 0 || taken >= kEnoughTaken)) break;
     if (made > kManyTriangles + kManyTimes * given.triangles.size()) break;
   }
-  if (!best) return tl::unexpected<Error>(last);
+  if (!best) return fail(last);
   best->made = made;
   return *best;
 }
@@ -311,9 +308,9 @@ Result<void> SurfaceSectorSource::check_shape(const QuotientSurface& surface,
                                           " for " + describe_rounded(volume_));
   }
   const IndexedSurface restored = restored_sector(surface);
-  if (auto near = check_distances(restored, context); !near) return near;
+  SYMCELL_TRY(check_distances(restored, context));
   auto crossing = self_intersections(restored, 1, context);
-  if (!crossing) return tl::unexpected<Error>(crossing.error());
+  if (!crossing) return error_of(crossing);
   if (!crossing->empty()) return fail(ErrorCode::kInternal, "the sector intersects itself");
   return {};
 }
@@ -327,7 +324,7 @@ Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
   IndexedSurface all;
   std::int32_t last = -1;
   for (std::int32_t k = 0; k < symmetry_.fold; ++k) {
-    if (auto state = context.check(); !state) return state;
+    SYMCELL_TRY(context.check());
     for (const Point3& p : samples) {
       if (!tree_.within(rotations.rotate(p, k), tolerance_, last)) return failure;
     }
@@ -337,7 +334,7 @@ Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
       all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     }
   }
-  if (auto state = context.check(); !state) return state;
+  SYMCELL_TRY(context.check());
   const TriangleTree copies(all.points, all.triangles);
   last = -1;
   const bool near = std::all_of(samples_.begin(), samples_.end(), [&](const Point3& p) {
@@ -360,19 +357,17 @@ Result<Sector> SurfaceSectorSource::sector(std::int32_t index, ExecutionContext&
     }
   } else {
     auto patch = cut_wedge(full_, symmetry_.fold, candidate.start_angle, candidate.snap);
-    if (!patch) return tl::unexpected<Error>(patch.error());
+    if (!patch) return error_of(patch);
     auto glued = glue_cuts(std::move(*patch), kMatchTolerances * candidate.tolerance,
                            kMergeShare * candidate.tolerance, context);
-    if (!glued) return tl::unexpected<Error>(glued.error());
+    if (!glued) return error_of(glued);
     quotient = std::move(glued->surface);
   }
   const FlatnessTolerances flatness{noise_,
                                     std::max(noise_, kFlatShareOfTolerance * candidate.tolerance)};
-  if (auto flat = flatten_planar_patches(quotient, flatness, context); !flat) {
-    return tl::unexpected<Error>(flat.error());
-  }
+  SYMCELL_TRY(flatten_planar_patches(quotient, flatness, context));
   const auto shape = improve(quotient, candidate, flatness, context);
-  if (!shape) return tl::unexpected<Error>(shape.error());
+  if (!shape) return error_of(shape);
   auto sector = quotient_to_sector(quotient);
   if (sector) {
     sector->narrow_corners = shape->narrow;

@@ -42,7 +42,7 @@ Result<SymmetricPlc> find_and_average(const ValidPlc& valid,
                                       ExecutionContext& context) {
   const PlcComplex& complex = valid.complex;
   auto fit = find_plc_symmetry(complex, valid.cells, options, ladder, context);
-  if (!fit) return tl::unexpected(fit.error());
+  if (!fit) return error_of(fit);
   const double tolerance = std::max(
       options.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel) * complex.diameter,
       resolution_of(complex.diameter, complex.magnitude));
@@ -60,9 +60,9 @@ Result<std::unique_ptr<SectorSource>> symmetrise_plc(const Plc& plc,
                                                      const MeshOptions& options,
                                                      ExecutionContext& context) {
   auto valid = validate_plc(plc, context);
-  if (!valid) return tl::unexpected(valid.error());
+  if (!valid) return error_of(valid);
   auto symmetric = find_and_average(*valid, options, nullptr, context);
-  if (!symmetric) return tl::unexpected(symmetric.error());
+  if (!symmetric) return error_of(symmetric);
   return std::make_unique<PlcSource>(std::move(*symmetric));
 }
 
@@ -70,10 +70,10 @@ Result<SolidInspection> inspect_plc(const Plc& plc,
                                     const MeshOptions& options,
                                     ExecutionContext& context) {
   auto valid = validate_plc(plc, context);
-  if (!valid) return tl::unexpected(valid.error());
+  if (!valid) return error_of(valid);
   std::vector<PlcFit> ladder;
   const auto symmetric = find_and_average(*valid, options, &ladder, context);
-  if (!symmetric) return tl::unexpected(symmetric.error());
+  if (!symmetric) return error_of(symmetric);
   SolidInspection result;
   result.kind = "plc";
   result.fold = symmetric->symmetry.fold;

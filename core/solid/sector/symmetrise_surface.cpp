@@ -12,10 +12,10 @@ Result<std::unique_ptr<SectorSource>> symmetrise_surface(const TriangleSurface& 
   const double tolerance_rel =
       options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel);
   auto clean = clean_surface(surface, context, tolerance_rel);
-  if (!clean) return tl::unexpected<Error>(clean.error());
-  if (clean->problem) return tl::unexpected<Error>(*clean->problem);
+  if (!clean) return error_of(clean);
+  if (clean->problem) return fail(*clean->problem);
   auto symmetry = detect_surface_symmetry(*clean, options, context);
-  if (!symmetry) return tl::unexpected<Error>(symmetry.error());
+  if (!symmetry) return error_of(symmetry);
   const double tolerance = tolerance_rel * clean->diameter;
   return std::make_unique<SurfaceSectorSource>(std::move(*clean), symmetry->symmetry, tolerance);
 }
@@ -25,7 +25,7 @@ Result<SolidInspection> inspect_surface(const TriangleSurface& surface,
                                         ExecutionContext& context) {
   auto clean = clean_surface(surface, context,
                              options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel));
-  if (!clean) return tl::unexpected<Error>(clean.error());
+  if (!clean) return error_of(clean);
   SolidInspection result;
   result.kind = "surface";
   result.volume = clean->volume;
@@ -46,7 +46,7 @@ Result<SolidInspection> inspect_surface(const TriangleSurface& surface,
   if (!found) {
     const ErrorCode code = found.error().code;
     if (code != ErrorCode::kAmbiguousSymmetry && code != ErrorCode::kNotSymmetric) {
-      return tl::unexpected<Error>(found.error());
+      return error_of(found);
     }
     result.problem = found.error().message;
     return result;

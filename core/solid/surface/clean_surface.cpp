@@ -5,10 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "core/geometry/limits.hpp"
 #include "core/geometry/self_intersections.hpp"
 #include "core/geometry/surface_distance.hpp"
 #include "core/model/describe.hpp"
-#include "core/model/limits.hpp"
 #include "core/solid/surface/mend_surface.hpp"
 #include "core/solid/surface/shells.hpp"
 #include "core/solid/surface/t_junctions.hpp"
@@ -55,7 +55,7 @@ class Cleaner {
       : input_(input), context_(context), tolerance_rel_(tolerance_rel) {}
 
   Result<CleanSurface> run() {
-    if (auto ok = check_input(); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(check_input());
     surface() = weld_exactly(input_);
     if (surface().triangles.empty()) {
       return fail(ErrorCode::kDegenerateGeometry,
@@ -71,7 +71,7 @@ class Cleaner {
     for (auto step : {&Cleaner::close, &Cleaner::orient, &Cleaner::remove_flat,
                       &Cleaner::check_intersections}) {
       auto done = (this->*step)();
-      if (!done) return tl::unexpected<Error>(done.error());
+      if (!done) return error_of(done);
       if (result_.problem) break;
     }
     const Point3 centre = 0.5 * (result_.box.low + result_.box.high);
@@ -133,7 +133,7 @@ class Cleaner {
     std::vector<OpenEdge> open = open_edges(surface());
     if (open.empty()) return {};
     for (const double tolerance : kWeldTolerances) {
-      if (auto state = context_.check(); !state) return state;
+      SYMCELL_TRY(context_.check());
       IndexedSurface welded = weld_within(surface(), tolerance * result_.diameter);
       if (welded.triangles.empty() || !open_edges(welded).empty()) continue;
       result_.repairs.push_back(
@@ -183,7 +183,7 @@ class Cleaner {
     if (!shells) {
       const ErrorCode code = shells.error().code;
       if (code != ErrorCode::kNotWatertight && code != ErrorCode::kDegenerateGeometry) {
-        return tl::unexpected<Error>(shells.error());
+        return error_of(shells);
       }
       result_.problem = shells.error();
       return {};
@@ -216,11 +216,11 @@ class Cleaner {
 
   Result<void> check_intersections() {
     auto pairs = self_intersections(surface(), kMostPairs, context_);
-    if (!pairs) return tl::unexpected<Error>(pairs.error());
+    if (!pairs) return error_of(pairs);
     if (pairs->empty()) return {};
     if (pairs->size() < kMostPairs) {
       auto mended = mend(pairs->size());
-      if (!mended) return tl::unexpected<Error>(mended.error());
+      if (!mended) return error_of(mended);
       if (*mended) return {};
     }
     const std::string count = pairs->size() == kMostPairs ? "more than " : "";
@@ -259,7 +259,7 @@ class Cleaner {
     if (std::abs(after - before) > kMendedVolumeRel * std::abs(before)) return false;
     if (!open_edges(*mended).empty()) return false;
     auto left = self_intersections(*mended, 1, context_);
-    if (!left) return tl::unexpected<Error>(left.error());
+    if (!left) return error_of(left);
     if (!left->empty()) return false;
     // What lies between shells that overlap may be filled, or cut away.
     if (!are_near(surface(), *mended, tolerance_rel_ * result_.diameter)) return false;

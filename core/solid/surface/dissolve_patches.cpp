@@ -81,7 +81,7 @@ std::array<Point3, 3> corners_of(const QuotientSurface& s,
 
 Result<Survey> survey(const QuotientSurface& surface) {
   const auto neighbours = find_neighbours(surface);
-  if (!neighbours) return tl::unexpected<Error>(neighbours.error());
+  if (!neighbours) return error_of(neighbours);
   const RotationTable rotations(surface.fold);
   Survey result;
   const std::int32_t count = find_parts(surface, *neighbours, result.patch);
@@ -122,7 +122,7 @@ void give_up(QuotientSurface& surface, const Survey& found) {
 
 Result<void> dissolve_narrow_patches(QuotientSurface& surface, double most) {
   auto found = survey(surface);
-  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found) return error_of(found);
   for (const SmoothSide& side : found->sides) {
     PatchFigures& f = found->patches[side.patch];
     if (side.length < kTellingShare * f.boundary) continue;
@@ -137,7 +137,7 @@ Result<void> dissolve_narrow_patches(QuotientSurface& surface, double most) {
 
 Result<void> dissolve_sharp_patches(QuotientSurface& surface, double most) {
   auto found = survey(surface);
-  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found) return error_of(found);
   const RotationTable rotations(surface.fold);
   std::map<std::pair<std::int32_t, std::int32_t>, double> angles;  // at (patch, vertex)
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {

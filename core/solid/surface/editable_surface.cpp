@@ -17,7 +17,7 @@ constexpr double kCreaseCosine = 0.82;
 
 Result<EditableSurface> EditableSurface::create(QuotientSurface& surface) {
   const auto neighbours = find_neighbours(surface);
-  if (!neighbours) return tl::unexpected<Error>(neighbours.error());
+  if (!neighbours) return error_of(neighbours);
   EditableSurface editable(surface);
   editable.stars_.resize(surface.points.size());
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {

@@ -71,9 +71,9 @@ class Improver {
   Result<std::vector<std::array<std::uint8_t, 3>>> coarsen() {
     for (int pass = 0; pass < kMostPasses; ++pass) {
       auto collapsed = collapse_pass();
-      if (!collapsed) return tl::unexpected<Error>(collapsed.error());
+      if (!collapsed) return error_of(collapsed);
       auto ok = steps({&Improver::flip_pass, &Improver::move_pass});
-      if (!ok) return tl::unexpected<Error>(ok.error());
+      if (!ok) return error_of(ok);
       if (static_cast<double>(*collapsed) <= kWorthwhile * count()) break;
     }
     guard_.renumber(mesh_.compact());
@@ -85,7 +85,7 @@ class Improver {
     shaping_ = true;
     for (int round = 0; round < kRounds; ++round) {
       auto cut = split_pass();
-      if (!cut) return tl::unexpected<Error>(cut.error());
+      if (!cut) return error_of(cut);
       auto ok = steps({&Improver::flip_pass, &Improver::move_pass, &Improver::collapse_pass,
                        &Improver::flip_pass, &Improver::move_pass});
       if (!ok) return ok;
@@ -97,7 +97,7 @@ class Improver {
     begun_ = {};  // flips are judged in another way now
     for (int pass = 0; pass < kMostPasses; ++pass) {
       auto flipped = flip_pass();
-      if (!flipped) return tl::unexpected<Error>(flipped.error());
+      if (!flipped) return error_of(flipped);
       if (*flipped == 0) break;
     }
     ok = NarrowCorners(mesh_, guard_, kPlaneRounding * extent_, context_).open();
@@ -112,7 +112,7 @@ class Improver {
   Result<void> steps(std::initializer_list<Pass> passes) {
     for (const Pass pass : passes) {
       auto done = (this->*pass)();
-      if (!done) return tl::unexpected<Error>(done.error());
+      if (!done) return error_of(done);
     }
     return {};
   }
@@ -173,7 +173,7 @@ class Improver {
     touched_.assign(mesh_.surface().points.size(), false);
     for (const Candidate& e : edges_by_length()) {
       if (++seen % kCheckEvery == 0) {
-        if (auto state = context_.check(); !state) return tl::unexpected<Error>(state.error());
+        SYMCELL_TRY(context_.check());
       }
       if (!mesh_.alive(e.triangle)) continue;
       const QuotientTriangle& c = mesh_.surface().triangles[e.triangle];
@@ -282,7 +282,7 @@ class Improver {
     const double least = kLeastSplit * guard_.most();
     for (std::int32_t t = 0; t < count; ++t) {
       if (static_cast<std::size_t>(t) % kCheckEvery == 0) {
-        if (auto state = context_.check(); !state) return tl::unexpected<Error>(state.error());
+        SYMCELL_TRY(context_.check());
       }
       if (!mesh_.alive(t) || planar(t)) continue;
       const auto p = mesh_.points(t);
@@ -310,7 +310,7 @@ class Improver {
     const auto count = static_cast<std::int32_t>(mesh_.surface().triangles.size());
     for (std::int32_t t = 0; t < count; ++t) {
       if (static_cast<std::size_t>(t) % kCheckEvery == 0) {
-        if (auto state = context_.check(); !state) return tl::unexpected<Error>(state.error());
+        SYMCELL_TRY(context_.check());
       }
       for (std::int32_t side = 0; side < 3 && mesh_.alive(t); ++side) {
         done += try_flip(t, side) ? 1 : 0;
@@ -358,7 +358,7 @@ class Improver {
     const QuotientSurface& s = mesh_.surface();
     for (std::size_t i = 0; i < s.points.size(); ++i) {
       if (i % kCheckEvery == 0) {
-        if (auto state = context_.check(); !state) return tl::unexpected<Error>(state.error());
+        SYMCELL_TRY(context_.check());
       }
       done += try_move(static_cast<std::int32_t>(i)) ? 1 : 0;
     }
@@ -419,7 +419,7 @@ class Improver {
     }
     for (std::size_t i = 0; i < s.points.size(); ++i) {
       if (i % kCheckEvery == 0) {
-        if (auto state = context_.check(); !state) return tl::unexpected<Error>(state.error());
+        SYMCELL_TRY(context_.check());
       }
       done += try_fit(static_cast<std::int32_t>(i)) ? 1 : 0;
     }
@@ -483,18 +483,18 @@ Result<void> improve_surface(QuotientSurface& surface,
                              double most,
                              const FlatnessTolerances& flatness,
                              ExecutionContext& context) {
-  if (auto ok = dissolve_narrow_patches(surface, most); !ok) return ok;
+  SYMCELL_TRY(dissolve_narrow_patches(surface, most));
   DeviationGuard guard(surface, most);
   auto editable = EditableSurface::create(surface);
-  if (!editable) return tl::unexpected<Error>(editable.error());
+  if (!editable) return error_of(editable);
   auto marks = Improver(std::move(*editable), guard, context).coarsen();
-  if (!marks) return tl::unexpected<Error>(marks.error());
+  if (!marks) return error_of(marks);
   refresh_normals(surface);
-  if (auto ok = flatten_planar_patches(surface, flatness, context); !ok) return ok;
-  if (auto ok = dissolve_sharp_patches(surface, most); !ok) return ok;
+  SYMCELL_TRY(flatten_planar_patches(surface, flatness, context));
+  SYMCELL_TRY(dissolve_sharp_patches(surface, most));
   editable = EditableSurface::create(surface, std::move(*marks));
-  if (!editable) return tl::unexpected<Error>(editable.error());
-  if (auto ok = Improver(std::move(*editable), guard, context).shape(); !ok) return ok;
+  if (!editable) return error_of(editable);
+  SYMCELL_TRY(Improver(std::move(*editable), guard, context).shape());
   drop_bent_triangles(surface);
   return {};
 }

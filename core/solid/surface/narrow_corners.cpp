@@ -45,7 +45,7 @@ Result<void> NarrowCorners::open() {
     const auto count = static_cast<std::int32_t>(mesh_.surface().triangles.size());
     for (std::int32_t t = 0; t < count; ++t) {
       if (!mesh_.alive(t) || planar(t) || narrow_corners(mesh_.points(t)) == 0) continue;
-      if (auto state = context_.check(); !state) return state;
+      SYMCELL_TRY(context_.check());
       done += open_corners_of(t) ? 1 : 0;
     }
     if (done == 0) break;

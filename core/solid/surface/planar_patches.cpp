@@ -36,7 +36,7 @@ class PatchFinder {
 
   Result<void> run() {
     auto neighbours = find_neighbours(s_);
-    if (!neighbours) return tl::unexpected<Error>(neighbours.error());
+    if (!neighbours) return error_of(neighbours);
     neighbours_ = std::move(*neighbours);
     const std::size_t count = s_.triangles.size();
     s_.planes.clear();
@@ -57,7 +57,7 @@ class PatchFinder {
     visited_.assign(count, -1);
     for (std::size_t i = 0; i < count; ++i) {
       if (i % kCheckEvery == 0) {
-        if (auto state = context_.check(); !state) return state;
+        SYMCELL_TRY(context_.check());
       }
       if (s_.patch[order[i]] < 0) grow(order[i]);
     }

@@ -72,8 +72,8 @@ class Orienter {
       : surface_(surface), context_(context) {}
 
   Result<Shells> run() {
-    if (auto done = agree(); !done) return tl::unexpected<Error>(done.error());
-    if (auto done = nest(); !done) return tl::unexpected<Error>(done.error());
+    SYMCELL_TRY(agree());
+    SYMCELL_TRY(nest());
     return std::move(shells_);
   }
 
@@ -151,7 +151,7 @@ class Orienter {
     shells_.depth.assign(count, 0);
     for (std::size_t s = 0; s < count; ++s) {
       if (s % kCheckEvery == 0) {
-        if (auto state = context_.check(); !state) return state;
+        SYMCELL_TRY(context_.check());
       }
       for (std::size_t o = 0; o < count; ++o) {
         if (o == s || !encloses(boxes[o], boxes[s])) continue;

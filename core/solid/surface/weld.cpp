@@ -5,16 +5,10 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/base/union_find.hpp"
+
 namespace symcell::solid {
 namespace {
-
-std::int32_t find_root(std::vector<std::int32_t>& parent, std::int32_t i) {
-  while (parent[i] != i) {
-    parent[i] = parent[parent[i]];
-    i = parent[i];
-  }
-  return i;
-}
 
 bool lexicographic(const Point3& p, const Point3& q) {
   return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
@@ -104,9 +98,9 @@ IndexedSurface weld_exactly(const TriangleSurface& surface) {
 
 IndexedSurface weld_within(const IndexedSurface& surface, double tolerance) {
   const auto& points = surface.points;
-  std::vector<std::int32_t> parent(points.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  std::vector<std::int32_t> order(parent);
+  UnionFind near(points.size());
+  std::vector<std::int32_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::int32_t{0});
   // Sweep along x: each point meets those whose x is not farther than the tolerance.
   std::sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) {
     return points[i] == points[j] ? i < j : lexicographic(points[i], points[j]);
@@ -141,14 +135,12 @@ IndexedSurface weld_within(const IndexedSurface& surface, double tolerance) {
       const Point3& q = points[cells[m].point];
       if (q.x - p.x > tolerance) break;
       if (squared_distance(p, q) > tolerance * tolerance) continue;
-      const std::int32_t a = find_root(parent, cells[k].point);
-      const std::int32_t b = find_root(parent, cells[m].point);
-      if (a != b) parent[std::max(a, b)] = std::min(a, b);
+      near.join(cells[k].point, cells[m].point);
     }
   }
   std::vector<std::int32_t> group(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    group[i] = find_root(parent, static_cast<std::int32_t>(i));
+    group[i] = near.root(static_cast<std::int32_t>(i));
   }
   IndexedSurface merged = merge_points(surface, group);
   drop_doubled_triangles(merged);

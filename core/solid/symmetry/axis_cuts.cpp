@@ -25,9 +25,9 @@ class AxisCutter {
     split_edges();
     for (std::size_t f = 0; f < complex_.facets.size(); ++f) {
       if (f % 64 == 0) {
-        if (auto ok = context_.check(); !ok) return ok;
+        SYMCELL_TRY(context_.check());
       }
-      if (auto ok = cut_facet(complex_.facets[f]); !ok) return ok;
+      SYMCELL_TRY(cut_facet(complex_.facets[f]));
     }
     if (changed_) rebuild_edges();
     return {};

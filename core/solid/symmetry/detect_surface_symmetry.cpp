@@ -75,11 +75,11 @@ class Detector {
         shape_(clean.surface, clean.diameter) {}
 
   Result<DetectedSymmetry> run() {
-    if (auto ok = check_options(); !ok) return tl::unexpected<Error>(ok.error());
+    SYMCELL_TRY(check_options());
     mass_ = mass_properties(clean_.surface);
     if (options_.fold == 1) return whole_model();
     auto axes = candidate_axes();
-    if (!axes) return tl::unexpected<Error>(axes.error());
+    if (!axes) return error_of(axes);
     return options_.fold ? check_fold(*axes) : detect_fold(*axes);
   }
 
@@ -133,7 +133,7 @@ class Detector {
     for (const Point3& d : mass_.directions) axes.push_back({origin, d});
     const auto& m = mass_.moments;
     if (m[2] - m[0] < kEqualMoments * m[2]) {
-      if (auto ok = scan(origin, axes); !ok) return tl::unexpected<Error>(ok.error());
+      SYMCELL_TRY(scan(origin, axes));
     }
     return axes;
   }
@@ -150,7 +150,7 @@ class Detector {
     const std::int32_t first = options_.fold.value_or(2);
     const std::int32_t last = options_.fold.value_or(kMostScannedFold);
     for (std::size_t i = 0; i < kScannedDirections; ++i) {
-      if (auto state = context_.check(); !state) return state;
+      SYMCELL_TRY(context_.check());
       const double z = (static_cast<double>(i) + 0.5) / kScannedDirections;
       const double r = std::sqrt(1 - z * z), phi = golden * static_cast<double>(i);
       const SymmetryAxis axis{origin, {r * std::cos(phi), r * std::sin(phi), z}};
@@ -242,7 +242,7 @@ class Detector {
       const SymmetryAxis axis = refined(candidate, n);
       // A better axis than those before, or it does not matter how bad.
       auto error = shape_.error(axis, n, best_error.distance, context_);
-      if (!error) return tl::unexpected<Error>(error.error());
+      if (!error) return error_of(error);
       if (error->distance >= best_error.distance) continue;
       best_error = *error;
       best.axis = axis;
@@ -272,7 +272,7 @@ class Detector {
     bool revolution = false;
     for (const SymmetryAxis& candidate : axes) {
       auto result = ladder(candidate);
-      if (!result) return tl::unexpected<Error>(result.error());
+      if (!result) return error_of(result);
       if (result->revolution) {
         revolution = true;
         best = *result;
@@ -343,7 +343,7 @@ class Detector {
         const auto [turn, fresh] = turns.try_emplace({k / g, n / g}, 0.0);
         if (fresh) {
           auto error = shape_.turn_error(result.axis, k, n, enough, context_);
-          if (!error) return tl::unexpected<Error>(error.error());
+          if (!error) return error_of(error);
           turn->second = error->distance;
         }
         worst = std::max(worst, turn->second);

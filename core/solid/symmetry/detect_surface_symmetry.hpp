@@ -11,8 +11,8 @@
 
 #include "core/base/error.hpp"
 #include "core/base/execution_context.hpp"
+#include "core/cell/inspection.hpp"
 #include "core/model/mesh_options.hpp"
-#include "core/plane/symmetry/symmetrise.hpp"
 #include "core/solid/surface/clean_surface.hpp"
 #include "core/solid/symmetry/solid_symmetry.hpp"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "core/geometry/limits.hpp"
 #include "core/geometry/resolution.hpp"
 #include "core/model/describe.hpp"
-#include "core/model/limits.hpp"
 #include "core/solid/symmetry/plc_axes.hpp"
 
 namespace symcell::solid {
@@ -86,11 +86,9 @@ class SymmetrySearch {
     if (options_.fold == 1) return without_symmetry();
     AxisCandidates axes =
         principal_axes(complex_, options_.axis_origin, options_.axis_direction, tolerance_);
-    if (auto ok = try_all(axes.list); !ok) return tl::unexpected(ok.error());
+    SYMCELL_TRY(try_all(axes.list));
     if (axes.isotropic || (axes.open && !best_.accepted)) {
-      if (auto ok = try_all(scattered_axes(complex_, options_.axis_origin, tolerance_)); !ok) {
-        return tl::unexpected(ok.error());
-      }
+      SYMCELL_TRY(try_all(scattered_axes(complex_, options_.axis_origin, tolerance_)));
     }
     if (!best_.accepted && options_.fold) return not_symmetric();
     if (ladder != nullptr) fill_ladder(axes, *ladder);
@@ -106,7 +104,7 @@ class SymmetrySearch {
   // Keeps the best fit: accepted before not, higher folds before lower ones, then smaller errors.
   Result<void> try_all(const std::vector<AxisCandidate>& axes) {
     for (const AxisCandidate& axis : axes) {
-      if (auto ok = context_.check(); !ok) return ok;
+      SYMCELL_TRY(context_.check());
       if (options_.fold) {
         const std::int32_t fold = *options_.fold;
         // The counts leave out vertices near the axis only, so this loses no symmetric axis; the
@@ -154,7 +152,7 @@ class SymmetrySearch {
     }
   }
 
-  [[nodiscard]] tl::unexpected<Error> not_symmetric() const {
+  [[nodiscard]] Failure not_symmetric() const {
     const double limit = tolerance_ / complex_.diameter;
     Error error;
     error.code = ErrorCode::kNotSymmetric;
@@ -174,7 +172,7 @@ class SymmetrySearch {
       error.elements = best_.elements;
     }
     error.message += "; correct the model, the fold or the axis, or raise the tolerance";
-    return tl::unexpected(std::move(error));
+    return fail(std::move(error));
   }
 
   const PlcComplex& complex_;
@@ -196,7 +194,7 @@ Result<PlcFit> find_plc_symmetry(const PlcComplex& complex,
                                  const MeshOptions& options,
                                  std::vector<PlcFit>* ladder,
                                  ExecutionContext& context) {
-  if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
+  SYMCELL_TRY(check_options(options));
   return SymmetrySearch(complex, cells, options, context).run(ladder);
 }
 

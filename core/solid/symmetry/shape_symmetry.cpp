@@ -123,7 +123,7 @@ Result<ShapeError> ShapeSymmetry::turn_error(const SymmetryAxis& axis,
   std::int32_t last = -1;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (i % kCheckEvery == 0) {
-      if (auto state = context.check(); !state) return tl::unexpected<Error>(state.error());
+      SYMCELL_TRY(context.check());
     }
     const Point3 q = axis.origin + rotate_about(axis.direction, c, s, samples[i] - axis.origin);
     if (worst.distance > 0 && tree_.within(q, worst.distance, last)) continue;

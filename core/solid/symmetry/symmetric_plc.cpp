@@ -153,7 +153,7 @@ Result<SymmetricPlc> make_symmetric_plc(const PlcComplex& complex,
   move_to_local(fit.frame, plc.complex);
   place_points(rotations, plc);
   if (fit.fold > 1) {
-    if (auto ok = cut_at_axis(tolerance, plc, context); !ok) return tl::unexpected(ok.error());
+    SYMCELL_TRY(cut_at_axis(tolerance, plc, context));
   }
   const ComplexImage image = map_complex(plc.complex, point_images(plc, fit.fold), ignore_markers);
   if (image.mismatch) {

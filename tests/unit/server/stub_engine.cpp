@@ -19,10 +19,10 @@ Result<void> StubEngine::run(const EngineJob& job, ExecutionContext& context) {
     while (!open_ && (ignores_cancel_ || !context.cancelled())) {
       gate_.wait_for(lock, std::chrono::milliseconds(5));
     }
-    if (error_) return tl::unexpected(*error_);
+    if (error_) return fail(*error_);
   }
   if (throws_) throw std::runtime_error("the stub throws");
-  if (const auto go_on = context.check(42); !go_on) return go_on;
+  SYMCELL_TRY(context.check(42));
   FileWriter cell(job.cell);
   const auto written =
       write_cell_archive(symcell::test::ring_cell({}), [&](std::string_view piece) {
@@ -48,7 +48,7 @@ Result<std::string> StubEngine::inspect(const std::filesystem::path& model,
                                         const MeshOptions& /*options*/,
                                         ExecutionContext& /*context*/) {
   const std::lock_guard lock(mutex_);
-  if (error_) return tl::unexpected(*error_);
+  if (error_) return fail(*error_);
   return "{\"bytes\": " + std::to_string(std::filesystem::file_size(model)) + "}\n";
 }
 

@@ -15,7 +15,6 @@
 
 namespace symcell::plane::test {
 
-
 struct QuotientSample {
   SymmetricPslg pslg;
   InitialTriangulation start;

@@ -12,7 +12,7 @@
 #include "core/cell/full_mesh.hpp"
 #include "core/guard/boundary_topology.hpp"
 #include "core/mesh_model.hpp"
-#include "core/solid/plc/polygon_triangles.hpp"
+#include "core/model/polygon_triangles.hpp"
 #include "tests/support/plc_builders.hpp"
 
 namespace symcell::solid {

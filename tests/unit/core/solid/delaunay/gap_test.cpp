@@ -28,8 +28,7 @@ InitialTetrahedralization tetrahedralized(const Plc& plc, std::int32_t fold) {
   Error last;
   for (std::int32_t i = 0; i < (*source)->candidates(); ++i) {
     const auto sector = (*source)->sector(i, context);
-    auto solid =
-        sector ? tetrahedralize_sector(*sector, context) : tl::unexpected<Error>(sector.error());
+    auto solid = sector ? tetrahedralize_sector(*sector, context) : error_of(sector);
     if (solid) return std::move(*solid);
     last = solid.error();
   }

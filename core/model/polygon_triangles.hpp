@@ -7,7 +7,7 @@
 #include "core/base/error.hpp"
 #include "core/model/triangle_surface.hpp"
 
-namespace symcell::solid {
+namespace symcell {
 
 // Appends the triangles of a polygon to `surface.triangles`, oriented as the polygon is, and
 // `face` for each to `surface.source_face`. Convex polygons, and all others that the diagonals of
@@ -21,4 +21,4 @@ namespace symcell::solid {
                                           std::int32_t face,
                                           TriangleSurface& surface);
 
-}  // namespace symcell::solid
+}  // namespace symcell

@@ -1,4 +1,4 @@
-#include "core/solid/plc/polygon_triangles.hpp"
+#include "core/model/polygon_triangles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace symcell::solid {
+namespace symcell {
 namespace {
 
 std::size_t at(std::int32_t i) {
@@ -112,4 +112,4 @@ TEST(PolygonTriangles, BadOnes) {
 }
 
 }  // namespace
-}  // namespace symcell::solid
+}  // namespace symcell

@@ -1,4 +1,4 @@
-#include "core/solid/plc/polygon_triangles.hpp"
+#include "core/model/polygon_triangles.hpp"
 
 #include <algorithm>
 #include <string>
@@ -7,7 +7,7 @@
 #include "core/geometry/facet_triangulation.hpp"
 #include "core/geometry/predicates.hpp"
 
-namespace symcell::solid {
+namespace symcell {
 namespace {
 
 std::size_t at(std::int32_t i) {
@@ -85,4 +85,4 @@ Result<void> append_polygon(std::span<const std::int32_t> polygon,
   return {};
 }
 
-}  // namespace symcell::solid
+}  // namespace symcell

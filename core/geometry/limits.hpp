@@ -1,4 +1,4 @@
-// Limits of what a model may hold.
+// Coordinates that are computed with.
 #pragma once
 
 namespace symcell {
