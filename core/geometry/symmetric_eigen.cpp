@@ -10,21 +10,18 @@ SymmetricEigen symmetric_eigen(const std::array<double, 6>& m) {
   std::array<std::array<double, 3>, 3> a{
       {{m[0], m[1], m[2]}, {m[1], m[3], m[4]}, {m[2], m[4], m[5]}}};
   std::array<std::array<double, 3>, 3> v{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  constexpr int kMaxSweeps = 50;  // convergence is quadratic; five to eight are usual
+  constexpr int kMaxSweeps = 60;  // convergence is quadratic; five to eight are usual
+  constexpr double kOff = 1e-17;  // of the diagonal: below rounding
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    if (a[0][1] == 0 && a[0][2] == 0 && a[1][2] == 0) break;
+    const double off = std::abs(a[0][1]) + std::abs(a[0][2]) + std::abs(a[1][2]);
+    const double on = std::abs(a[0][0]) + std::abs(a[1][1]) + std::abs(a[2][2]);
+    if (off <= kOff * on) break;
     for (std::size_t p = 0; p < 2; ++p) {
       for (std::size_t q = p + 1; q < 3; ++q) {
-        const double diagonal = std::abs(a[p][p]) + std::abs(a[q][q]);
-        if (diagonal + std::abs(a[p][q]) == diagonal) {
-          a[p][q] = a[q][p] = 0;
-          continue;
-        }
+        if (a[p][q] == 0) continue;
         const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-        const double t =
-            (theta < 0 ? -1.0 : 1.0) / (std::abs(theta) + std::sqrt(theta * theta + 1));
-        const double c = 1 / std::sqrt(t * t + 1);
-        const double s = t * c;
+        const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::hypot(theta, 1));
+        const double c = 1 / std::hypot(t, 1), s = t * c;
         for (std::size_t k = 0; k < 3; ++k) {
           const double kp = a[k][p], kq = a[k][q];
           a[k][p] = c * kp - s * kq;
@@ -34,13 +31,10 @@ SymmetricEigen symmetric_eigen(const std::array<double, 6>& m) {
           const double pk = a[p][k], qk = a[q][k];
           a[p][k] = c * pk - s * qk;
           a[q][k] = s * pk + c * qk;
-        }
-        for (std::size_t k = 0; k < 3; ++k) {
           const double kp = v[k][p], kq = v[k][q];
           v[k][p] = c * kp - s * kq;
           v[k][q] = s * kp + c * kq;
         }
-        a[p][q] = a[q][p] = 0;
       }
     }
   }
