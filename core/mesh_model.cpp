@@ -12,12 +12,12 @@ namespace {
 
 void record(const solid::SectorSource& source, Statistics& statistics) {
   const solid::Symmetry& found = source.symmetry();
-  Statistics::Symmetry& told = statistics.symmetry;
-  told.fold = found.fold;
-  told.axis_origin = found.frame.origin;
-  told.axis_direction = found.frame.direction();
-  told.error_rel = found.error_rel;
-  told.detected = found.fold_detected;
+  Statistics::Symmetry& reported = statistics.symmetry;
+  reported.fold = found.fold;
+  reported.axis_origin = found.frame.origin;
+  reported.axis_direction = found.frame.direction();
+  reported.error_rel = found.error_rel;
+  reported.detected = found.fold_detected;
   statistics.repairs = source.repairs();
 }
 

@@ -25,14 +25,14 @@ float read_float(std::string_view bytes, std::size_t at) {
   return std::bit_cast<float>(read_u32(bytes, at));
 }
 
-std::uint32_t told_count(std::string_view bytes) {
+std::uint32_t stated_count(std::string_view bytes) {
   return read_u32(bytes, 80);
 }
 
 // The triangles the header promises are there. In a text, bytes 80 to 83 would be the number of
 // more triangles than any file has.
 bool count_fits(std::string_view bytes) {
-  return bytes.size() >= kHead && (bytes.size() - kHead) / kTriangle >= told_count(bytes);
+  return bytes.size() >= kHead && (bytes.size() - kHead) / kTriangle >= stated_count(bytes);
 }
 
 bool is_text(std::string_view bytes) {
@@ -43,7 +43,7 @@ bool is_text(std::string_view bytes) {
 }
 
 Failure wrong_count(std::string_view bytes, ErrorCode code, const std::string& what) {
-  return fail(code, "binary STL: the header says " + std::to_string(told_count(bytes)) +
+  return fail(code, "binary STL: the header says " + std::to_string(stated_count(bytes)) +
                         " triangles, " + what + "; was the file written completely?");
 }
 
@@ -52,7 +52,7 @@ Result<TriangleSurface> read_binary_stl(std::string_view bytes) {
     return fail(ErrorCode::kTruncated, "the file ends in the head of a binary STL, after " +
                                            std::to_string(bytes.size()) + " of 84 bytes");
   }
-  const std::uint32_t count = told_count(bytes);
+  const std::uint32_t count = stated_count(bytes);
   const std::size_t whole = (bytes.size() - kHead) / kTriangle;
   const std::size_t rest = (bytes.size() - kHead) % kTriangle;
   if (whole < count && rest != 0) {
@@ -112,7 +112,7 @@ bool has_binary_head(std::string_view bytes) {
 
 bool looks_like_binary_stl(std::string_view bytes) {
   if (bytes.size() < kHead) return false;
-  const bool exact = bytes.size() == kHead + std::size_t{told_count(bytes)} * kTriangle;
+  const bool exact = bytes.size() == kHead + std::size_t{stated_count(bytes)} * kTriangle;
   return exact || has_binary_head(bytes);
 }
 

@@ -54,9 +54,9 @@ class LinkChecker {
     std::sort(edges.begin(), edges.end());
     for (std::size_t i = 1; i < edges.size(); ++i) {
       const auto [a, b] = edges[i];
-      const bool excused = pinched_[at(cell_.nodes[at(a)].orbit)] != 0 &&
-                           pinched_[at(cell_.nodes[at(b)].orbit)] != 0;
-      if (edges[i] != edges[i - 1] || excused) continue;
+      const bool exempt = pinched_[at(cell_.nodes[at(a)].orbit)] != 0 &&
+                          pinched_[at(cell_.nodes[at(b)].orbit)] != 0;
+      if (edges[i] != edges[i - 1] || exempt) continue;
       return broken("elements at the edge " + name_of({a, b, -1}) + " touch there only");
     }
     return {};

@@ -142,7 +142,7 @@ Result<WorkDone> refine_from_starts(InitialTriangulation& start,
     auto work = attempt(mesh, own, number++);
     if (!work && work.error().code != ErrorCode::kBoundUnreachable) return work;
     if (!work || mesh.triangle_count() >= start.mesh.triangle_count()) continue;
-    // What a higher bound excuses, the one asked for may not.
+    // What a higher bound exempts, the one asked for may not.
     Criteria asked = initial_criteria;
     asked.adopt_segment_ends(own);
     if (has_bad_triangle(mesh, asked)) continue;

@@ -7,6 +7,7 @@
 #include "core/cell/mesh_outcome.hpp"
 #include "core/model/mesh_options.hpp"
 #include "core/solid/sector/sector_source.hpp"
+#include "core/solid/tuning.hpp"
 
 namespace symcell::solid {
 
@@ -14,6 +15,7 @@ namespace symcell::solid {
 // Errors: all meshing and limit codes.  Same input and options: same bytes.
 [[nodiscard]] Result<MeshOutcome> mesh_solid(const SectorSource& source,
                                              const MeshOptions& options,
-                                             ExecutionContext& context);
+                                             ExecutionContext& context,
+                                             const Tuning& tuning = {});
 
 }  // namespace symcell::solid

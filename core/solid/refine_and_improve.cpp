@@ -19,39 +19,15 @@
 namespace symcell::solid {
 namespace {
 
-// The improvement works on tetrahedra with a dihedral angle below this or above its supplement.
-constexpr double kGoalDeg = 26;
-// And may cost a vertex, or a detour, where one is below this.
-constexpr double kCostlyGoalDeg = 25;
-constexpr int kLastPasses = 3;
-// Full rounds of improvement: the second takes off 5 to 10 % of the tetrahedra, the third 2 to 5 %,
-// each for a quarter more time, which large meshes are not given. Depths of refinement after each
-// round, full or not.
-constexpr std::size_t kRounds = 3;
-constexpr std::size_t kRoundsIfLarge = 2;
-constexpr std::size_t kLargeCell = 5'000;
-// Bad tetrahedra that are mended without a full round.
-constexpr std::size_t kFewBad = 10;
-constexpr double kFewBadShare = 5e-4;
-// Rounds after which more than this share of the bad tetrahedra is left are the last: what is bad
-// is the input's fault, and refinement only adds to it.
-constexpr double kLeastProgress = 0.9;
+// Depths of refinement after each round, full or not.
 constexpr int kDepths[] = {2, 2, 3, 4, 5};
 // Depths of refinement where no improvement follows. What is bad after a shallow run is little, and
 // so is the budget of the deeper one.
 constexpr int kDepthsAlone[] = {2, 3, 4};
 constexpr int kDepthsDelaunay[] = {2, 2, 3, 3, 4, 4, 6, 6, 8, 8};
 
-// What later runs of refinement add for the sake of shape is little in models without acute input.
-// Where it is not, it is a cascade.
-constexpr std::uint64_t kMostGrowth = 4;
-constexpr std::uint64_t kLeastGrowth = 2'000;
-
-// For the sake of shape no edge gets shorter than this share of the shortest one of the first mesh,
-// whatever the runs: into spikes of the input they would shrink without end.
-constexpr double kLeastDistance = 1.0 / 256;
-
 struct Work {
+  RoundLimits limits;
   std::uint64_t most_shaped = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t most_tets = 0;
   double least_distance = 0;
@@ -118,7 +94,8 @@ Result<void> refine(
   auto done = refiner.run();
   work.refined += refiner.counters();
   work.most_shaped =
-      std::min(work.most_shaped, kMostGrowth * editor.mesh().tet_count() + kLeastGrowth);
+      std::min(work.most_shaped,
+               work.limits.most_growth * editor.mesh().tet_count() + work.limits.least_growth);
   return done;
 }
 
@@ -129,7 +106,7 @@ Result<void> improve(Editor& editor,
                      const MeshOptions& options,
                      ExecutionContext& context,
                      Work& work) {
-  const double goal_deg = std::max(kGoalDeg, options.min_dihedral_deg);
+  const double goal_deg = std::max(work.limits.goal_deg, options.min_dihedral_deg);
   const double goal = std::sin(goal_deg * std::numbers::pi / 180);
   bool full = true;
   std::size_t bad_before = editor.mesh().tet_count();
@@ -141,14 +118,17 @@ Result<void> improve(Editor& editor,
     Improver improver(surgery, criteria, context);
     SYMCELL_TRY(full ? improver.round(goal) : improver.mend(goal));
     const std::size_t count = editor.mesh().tet_count();
-    const std::size_t rounds = count > kLargeCell ? kRoundsIfLarge : kRounds;
+    const std::size_t rounds =
+        count > work.limits.large_cell ? work.limits.rounds_if_large : work.limits.rounds;
     bool last = false;
     if (round + 1 >= rounds) {
       const std::size_t bad = count_bad(editor, criteria);
       if (bad == 0) break;
-      last = static_cast<double>(bad) > kLeastProgress * static_cast<double>(bad_before);
+      last =
+          static_cast<double>(bad) > work.limits.least_progress * static_cast<double>(bad_before);
       bad_before = bad;
-      full = bad > kFewBad && static_cast<double>(bad) > kFewBadShare * static_cast<double>(count);
+      full = bad > work.limits.few_bad &&
+             static_cast<double>(bad) > work.limits.few_bad_share * static_cast<double>(count);
     }
     // What is too large must not stay, whatever else does.
     const int depth = last ? kDepths[0] : kDepths[round];
@@ -159,11 +139,11 @@ Result<void> improve(Editor& editor,
   Surgery surgery(editor, criteria);
   surgery.keep_size();
   Improver improver(surgery, criteria, context);
-  const double costly_deg = std::max(kCostlyGoalDeg, options.min_dihedral_deg);
+  const double costly_deg = std::max(work.limits.costly_goal_deg, options.min_dihedral_deg);
   const double costly_goal = std::sin(costly_deg * std::numbers::pi / 180);
   improver.allow_detours(costly_goal);
   // What could not be mended may be after its neighbours were.
-  return improver.mend(goal, kLastPasses);
+  return improver.mend(goal, work.limits.last_passes);
 }
 
 // Counts the exempt by reason and finds the worst shape. A broken size bound must not be handed
@@ -253,7 +233,8 @@ Statistics::Refinement count_work(const Editor& editor, const RefineCounters& re
 Result<RefinedSolid> refine_and_improve(InitialTetrahedralization solid,
                                         const MeshOptions& options,
                                         std::uint64_t most_tets,
-                                        ExecutionContext& context) {
+                                        ExecutionContext& context,
+                                        const RoundLimits& limits) {
   RefinedSolid result;
   result.solid = std::move(solid);
   QuotientTetrahedralization& mesh = result.solid.mesh;
@@ -268,8 +249,9 @@ Result<RefinedSolid> refine_and_improve(InitialTetrahedralization solid,
     static_cast<void>(Improver(surgery, criteria, context).collapse_cut_vertices());
   }
   Work work;
+  work.limits = limits;
   work.most_tets = most_tets;
-  work.least_distance = kLeastDistance * shortest_edge(editor);
+  work.least_distance = work.limits.least_distance * shortest_edge(editor);
   if (!options.plain) {
     auto ok = refine(editor, criteria, kDepths[0], context, work);
     if (ok) ok = improve(editor, criteria, options, context, work);

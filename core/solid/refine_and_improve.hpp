@@ -10,6 +10,7 @@
 #include "core/cell/statistics.hpp"
 #include "core/model/mesh_options.hpp"
 #include "core/solid/initial/initial_tetrahedralization.hpp"
+#include "core/solid/tuning.hpp"
 
 namespace symcell::solid {
 
@@ -18,9 +19,9 @@ struct RefinedSolid {
   Statistics::Refinement refinement;
   std::vector<ExemptCount> exempt;
   bool delaunay = true;
-  // Tetrahedra over the radius-edge bound that nothing of the input excuses.
+  // Tetrahedra over the radius-edge bound that nothing of the input exempts.
   std::uint64_t guarded = 0;
-  // Of the dihedral angles of the tetrahedra without and with an excuse.
+  // Of the dihedral angles of the tetrahedra without and with an exemption.
   double least_sine = 1;
   double least_exempt_sine = 1;
   // Tetrahedra that the volume bounds ask for by themselves.
@@ -36,6 +37,7 @@ struct RefinedSolid {
 [[nodiscard]] Result<RefinedSolid> refine_and_improve(InitialTetrahedralization solid,
                                                       const MeshOptions& options,
                                                       std::uint64_t most_tets,
-                                                      ExecutionContext& context);
+                                                      ExecutionContext& context,
+                                                      const RoundLimits& limits);
 
 }  // namespace symcell::solid

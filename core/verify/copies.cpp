@@ -87,7 +87,7 @@ class CopyChecker {
       regions_.note([&] {
         return name() + " has region " + std::to_string(full_.regions[e]) +
                ", its element of the cell " + std::to_string(cell_.regions[c]) +
-               (every_region ? " (a model with regions of its own would excuse other sectors)"
+               (every_region ? " (a model with regions of its own would exempt other sectors)"
                              : "");
       });
     }

@@ -120,8 +120,8 @@ class PinchFinder {
   return distance(p, s[0] + t * d);
 }
 
-std::string counted(std::size_t excused) {
-  return excused == 0 ? "" : std::to_string(excused) + " at pinches of the model itself";
+std::string counted(std::size_t exempt) {
+  return exempt == 0 ? "" : std::to_string(exempt) + " at pinches of the model itself";
 }
 
 }  // namespace
@@ -135,7 +135,7 @@ bool ModelPinches::on_edge(const Point3& p) const {
       edges, [&](const auto& edge) { return distance_to_segment(p, edge) <= tolerance; });
 }
 
-std::vector<char> ModelPinches::excuse(const std::vector<Point3>& places) const {
+std::vector<char> ModelPinches::exempted(const std::vector<Point3>& places) const {
   std::vector<char> result(places.size(), 0);
   for (std::size_t i = 0; i < places.size(); ++i) result[i] = on_edge(places[i]) ? 1 : 0;
   for (const Point3& p : points) {
@@ -149,7 +149,7 @@ std::vector<char> ModelPinches::excuse(const std::vector<Point3>& places) const 
 
 void check_links(const FacetedMesh& mesh,
                  const std::string& tag,
-                 const ModelPinches& excused,
+                 const ModelPinches& pinches,
                  Checks& checks) {
   if (mesh.mesh.element_count() > kMostLinked) {
     checks.skip(tag + ".vertex_links", "the mesh is too large");
@@ -158,10 +158,10 @@ void check_links(const FacetedMesh& mesh,
   const Pinches found = find_pinches(mesh);
   std::vector<Point3> places;
   for (const std::int32_t node : found.nodes) places.push_back(mesh.point(node));
-  const std::vector<char> excuses = excused.excuse(places);
+  const std::vector<char> exempts = pinches.exempted(places);
   Flaws nodes;
-  for (std::size_t i = 0; i < excuses.size(); ++i) {
-    if (excuses[i] != 0) continue;
+  for (std::size_t i = 0; i < exempts.size(); ++i) {
+    if (exempts[i] != 0) continue;
     nodes.note([&] {
       return "the elements at node " + std::to_string(found.nodes[i]) +
              " do not hang together by facets";
@@ -172,8 +172,8 @@ void check_links(const FacetedMesh& mesh,
   Flaws edges;
   for (const std::array<std::int32_t, 2>& ends : found.edges) {
     const Point3 p = mesh.point(ends[0]), q = mesh.point(ends[1]);
-    const bool excuse = excused.on_edge(p) && excused.on_edge(0.5 * (p + q)) && excused.on_edge(q);
-    if (excuse) continue;
+    const bool exempt = pinches.on_edge(p) && pinches.on_edge(0.5 * (p + q)) && pinches.on_edge(q);
+    if (exempt) continue;
     edges.note([&] {
       return "the elements round " + facet_name({ends[0], ends[1], -1}) +
              " do not hang together by faces";

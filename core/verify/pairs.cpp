@@ -229,7 +229,7 @@ bool check_pairs(const MeshData& cell, const Turns& turns, double tolerance, Che
 CellBounds check_bounds(const FacetedMesh& cell,
                         const Turns& turns,
                         double tolerance,
-                        const ModelPinches& excused,
+                        const ModelPinches& pinches,
                         Checks& checks) {
   BoundFinder finder(cell, turns);
   CellBounds bounds = finder.run(checks);
@@ -254,10 +254,10 @@ CellBounds check_bounds(const FacetedMesh& cell,
     nodes.push_back(i);
     places.push_back(cell.mesh.points[i]);
   }
-  const std::vector<char> excuses = excused.excuse(places);
+  const std::vector<char> exempts = pinches.exempted(places);
   Flaws flaws;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (excuses[i] != 0) continue;
+    if (exempts[i] != 0) continue;
     flaws.note([&] {
       return node_name(nodes[i]) + (pairs[nodes[i]] < 0 && low[nodes[i]] != 0
                                         ? " is on the lower bound and has no pair"

@@ -153,13 +153,13 @@ struct ModelPinches {
   [[nodiscard]] bool empty() const { return points.empty() && edges.empty(); }
   [[nodiscard]] bool on_edge(const Point3& p) const;
   // Per point, whether it is at a pinch: on an edge, or the nearest of them to a pinched vertex.
-  [[nodiscard]] std::vector<char> excuse(const std::vector<Point3>& places) const;
+  [[nodiscard]] std::vector<char> exempted(const std::vector<Point3>& places) const;
 };
 
 // *.vertex_links, *.edge_links
 void check_links(const FacetedMesh& mesh,
                  const std::string& tag,
-                 const ModelPinches& excused,
+                 const ModelPinches& pinches,
                  Checks& checks);
 
 // full.hanging_nodes

@@ -44,7 +44,7 @@ bool check_pairs(const MeshData& cell, const Turns& turns, double tolerance, Che
 CellBounds check_bounds(const FacetedMesh& cell,
                         const Turns& turns,
                         double tolerance,
-                        const ModelPinches& excused,
+                        const ModelPinches& pinches,
                         Checks& checks);
 
 // n copies of the cell, glued by the pairs: (i, k + 1) is (pair of i, k).  Requires: likewise.

@@ -123,7 +123,7 @@ class Verifier {
     if (options_.model_tolerance_rel) {
       model_tolerance_ = *options_.model_tolerance_rel * diameter_;
     } else if (is_surface()) {
-      model_tolerance_ = kSurfaceToleranceRel * diameter_;
+      model_tolerance_ = kSurfaceSymmetryToleranceRel * diameter_;
     } else {
       model_tolerance_ = kAsymmetries * asymmetry_;
     }
@@ -131,7 +131,7 @@ class Verifier {
     examined_.facts.pinches.tolerance = model_tolerance_;
   }
 
-  // Without a model nothing excuses a pinch.
+  // Without a model nothing exempts a pinch.
   [[nodiscard]] const ModelPinches& pinches() const { return examined_.facts.pinches; }
 
   void look_at_full(const FacetedMesh& cell,

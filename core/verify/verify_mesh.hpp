@@ -13,7 +13,7 @@
 //   *.conforming            a facet has at most two elements, from opposite sides
 //   *.mid_nodes             order 2: one node an edge and one edge a node, at the midpoint
 //   *.vertex_links          elements at a node hang together by facets
-//   *.edge_links            solids: likewise round an edge; both excused where the model itself
+//   *.edge_links            solids: likewise round an edge; both exempt where the model itself
 //                           pinches, which the program computes from the model alone
 //   cell.quality            angles and radius-edge ratio (told only)
 //   full.delaunay           share of free facets that are locally Delaunay (told only)
@@ -63,6 +63,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/mesh_options.hpp"
 #include "core/model/model.hpp"
 #include "core/verify/mesh_data.hpp"
 
@@ -81,11 +82,10 @@ struct VerifyReport {
   [[nodiscard]] bool ok() const;
 };
 
-inline constexpr double kSurfaceToleranceRel = 1e-3;  // a tessellation of a symmetric shape
-
 struct VerifyOptions {
   double tolerance_rel = 1e-9;  // of pairs and copies, relative to the model's diameter
-  // Of nodes against the model, which symmetrising moves; nullopt: of a surface as above, of a PSLG
+  // Of nodes against the model, which symmetrising moves; nullopt: of a surface
+  // kSurfaceSymmetryToleranceRel, of a PSLG
   // or PLC four times the model's own asymmetry, at least tolerance_rel.
   std::optional<double> model_tolerance_rel;
   std::optional<double> model_measure;  // area or volume; nullopt: computed from the model

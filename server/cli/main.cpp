@@ -8,10 +8,8 @@
 #include "api/version.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/report_error.hpp"
-#if SYMCELL_HAS_SERVE
 #include "server/cli/serve_command.hpp"
 #include "server/cli/worker_command.hpp"
-#endif
 
 namespace {
 
@@ -32,10 +30,8 @@ int run(int argc, char** argv) {
   int exit_code = 0;
   symcell::cli::add_mesh_command(app, exit_code);
   symcell::cli::add_inspect_command(app, exit_code);
-#if SYMCELL_HAS_SERVE
   symcell::add_serve_command(app, exit_code);
   symcell::add_worker_command(app, exit_code);
-#endif
   symcell::cli::add_verify_command(app, exit_code);
   // CLI11 would only say that a subcommand is missing.
   if (argc > 1 && argv[1][0] != '-' && !has_command(app, argv[1])) {

@@ -227,8 +227,8 @@ TaskOutcome WorkerProcess::run(const RequestMessage& request, ExecutionContext& 
     read_last_words();
     const MessageChannel::Received received = channel_->receive();
     if (received.status == MessageChannel::Status::kMessage) {
-      if (const auto* told = std::get_if<ProgressMessage>(&received.message)) {
-        const Progress& p = told->progress;
+      if (const auto* reported = std::get_if<ProgressMessage>(&received.message)) {
+        const Progress& p = reported->progress;
         context.report(p.phase, p.fraction, p.elements, p.quality_reached);
       } else if (const auto* done = std::get_if<DoneMessage>(&received.message)) {
         return {done->document};

@@ -249,7 +249,7 @@ void QuotientTriangulation::commit() {
   append_and_clear(free_subsegments_, journal_.released_subsegments);
 }
 
-void QuotientTriangulation::rollback() {
+void QuotientTriangulation::roll_back() {
   SYMCELL_ASSERT(journal_.active);
   journal_.active = false;
   for (auto it = journal_.triangles.rbegin(); it != journal_.triangles.rend(); ++it) {

@@ -166,11 +166,11 @@ class QuotientTriangulation {
   // another in memory, and the order does not tell how the mesh was made.
   void compact();
 
-  // Transactions: between begin and commit or rollback every change of triangles, vertices and
+  // Transactions: between begin and commit or roll_back every change of triangles, vertices and
   // subsegments made through `touch` and the functions above can be taken back.
   void begin();
   void commit();
-  void rollback();
+  void roll_back();
   [[nodiscard]] bool in_transaction() const { return journal_.active; }
   // Must be called before a triangle, vertex or subsegment slot is written in a transaction.
   void touch(TriangleId t) {

@@ -163,7 +163,7 @@ bool Coarsener::remove_and_mend(VertexId v) {
     mesh_.commit();
     return true;
   }
-  mesh_.rollback();
+  mesh_.roll_back();
   return false;
 }
 

@@ -38,7 +38,7 @@ enum class Exemption : std::uint8_t {
   kMet  // (o, a, Ra) where 360/n is the bound itself: keeps it, though not the margin
 };
 
-// A triangle bad in angle and size is kAngle and `too_large`: an excuse for the one is none for the
+// A triangle bad in angle and size is kAngle and `too_large`: an exemption from the one is none for the
 // other.
 struct Assessment {
   Verdict verdict = Verdict::kGood;

@@ -123,7 +123,7 @@ bool StarSurgery::keep_if_sizes_hold(bool transaction) {
   if (!transaction) return true;
   for (const TriangleId t : editor_.created()) {
     if (mesh_.alive(t) && criteria_.assess(mesh_, mesh_.triangle(t)).too_large) {
-      mesh_.rollback();
+      mesh_.roll_back();
       editor_.created().clear();
       return false;
     }

@@ -60,7 +60,7 @@ FoldDetector::FoldDetector(const PreparedPslg& prepared,
       center_given_(center != nullptr),
       center_(center != nullptr ? *center : prepared.centroid) {
   collect_samples();
-  keep_telling_samples();
+  keep_discriminating_samples();
 }
 
 void FoldDetector::collect_samples() {
@@ -86,7 +86,7 @@ void FoldDetector::collect_samples() {
 
 // Orders the samples by how few share their distance from the centre: those tell most folds apart.
 // Of very many, keeps half from the front and half from all over.
-void FoldDetector::keep_telling_samples() {
+void FoldDetector::keep_discriminating_samples() {
   struct Ranked {
     double radius;
     std::int32_t sample;

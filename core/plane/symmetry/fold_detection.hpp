@@ -50,7 +50,7 @@ class FoldDetector {
   };
 
   void collect_samples();
-  void keep_telling_samples();
+  void keep_discriminating_samples();
   [[nodiscard]] double miss(
       const Sample& sample, Point2 image, double cosine, double sine, double reach) const;
   [[nodiscard]] bool passes_quickly(std::int32_t fold) const;

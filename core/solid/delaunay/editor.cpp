@@ -51,13 +51,13 @@ void Editor::remeasure_all() {
   }
 }
 
-void Editor::begin_trial() {
-  mesh_.begin_trial();
+void Editor::begin() {
+  mesh_.begin();
   counters_before_ = counters_;
 }
 
-std::vector<TetId> Editor::take_back_trial() {
-  std::vector<TetId> written = mesh_.take_back_trial();
+std::vector<TetId> Editor::roll_back() {
+  std::vector<TetId> written = mesh_.roll_back();
   std::erase_if(written, [&](TetId t) { return !mesh_.alive(t); });
   for (const TetId t : written) measures_[t] = measure(t);
   counters_ = counters_before_;

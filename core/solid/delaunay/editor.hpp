@@ -116,9 +116,9 @@ class Editor {
     mesh_.bump_version(t);
   }
   // As of the mesh; returns the tetrahedra that are as they were again.
-  void begin_trial();
-  void keep_trial() { mesh_.keep_trial(); }
-  std::vector<TetId> take_back_trial();
+  void begin();
+  void commit() { mesh_.commit(); }
+  std::vector<TetId> roll_back();
   // Tetrahedra near one another come to lie near one another in memory; vertices keep their ids.
   void compact();
 

@@ -87,7 +87,7 @@ double Improver::mend_detour(double goal) {
   return worst;
 }
 
-// Bounds that must be kept are bought at any shape, what the input excuses is not; and nothing at
+// Bounds that must be kept are bought at any shape, what the input exempts is not; and nothing at
 // the price of a bound on size, which no refinement mends any more.
 bool Improver::detour(TetId t) {
   const double before = key(t);
@@ -99,19 +99,19 @@ bool Improver::detour(TetId t) {
   };
   const double size_before = std::max(1.0, size_excess2(t));
   const std::uint32_t version = mesh_.tet(t).version;
-  // Where the input excuses what is bad there is mostly no way at all.
+  // Where the input exempts what is bad there is mostly no way at all.
   const bool sharp = criteria_.exemption(mesh_, mesh_.tet(t)) == Exemption::kSmallInputAngle;
-  const bool excused = before < 0 && !must_be_mended(before);
-  const std::size_t ways = sharp || excused ? kOwnWays : kAllWays;
+  const bool exempt = before < 0 && !must_be_mended(before);
+  const std::size_t ways = sharp || exempt ? kOwnWays : kAllWays;
   for (std::size_t way = 0; way < ways && detours_left_ > 0; ++way) {
-    surgery_.begin_trial();
+    surgery_.begin();
     surgery_.set_lenient(true);
     const bool opened = open_detour(t, way);
     surgery_.set_lenient(false);
     // The place for a new vertex is searched for long before it is known that there is none.
     if (opened || inserts(way)) --detours_left_;
     if (!opened) {
-      surgery_.keep_trial();  // of nothing
+      surgery_.commit();  // of nothing
       continue;
     }
     touched_.assign(surgery_.touched().begin(), surgery_.touched().end());
@@ -121,10 +121,10 @@ bool Improver::detour(TetId t) {
     });
     const bool changed = !mesh_.alive(t) || mesh_.tet(t).version != version;
     if (changed && worst >= wanted && will_do) {
-      surgery_.keep_trial();
+      surgery_.commit();
       return true;
     }
-    surgery_.take_back_trial();
+    surgery_.roll_back();
   }
   return false;
 }

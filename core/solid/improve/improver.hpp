@@ -59,7 +59,7 @@ class Improver {
   [[nodiscard]] std::vector<VertexId> vertices_in_order() const;
   [[nodiscard]] bool merge(VertexId v, double floor, Surgery::Bounds bounds);
   // Low where there is much to mend: broken bounds that must be kept (below -kMustBeKept), then
-  // those that the input excuses (below 0), then poor shapes (their sine).
+  // those that the input exempts (below 0), then poor shapes (their sine).
   static constexpr double kMustBeKept = 1e12;
   [[nodiscard]] double key(TetId t) const;
   [[nodiscard]] static bool must_be_mended(double key) { return key <= -kMustBeKept; }

@@ -9,7 +9,7 @@ namespace {
 
 // Stars without a sine below this (25 degrees) and within all bounds are left to the mean:
 // searching on takes a third of the time and makes meshes no smaller.
-constexpr double kGoodShape = 0.42;
+constexpr double kGoodTet = 0.42;
 // Steps of a pattern search, as shares of the shortest edge at the vertex.
 constexpr std::array<double, 4> kSteps = {0.3, 0.15, 0.07, 0.03};
 
@@ -97,7 +97,7 @@ bool Surgery::smooth(VertexId v) {
     if (!attempt(mean)) static_cast<void>(attempt(0.5 * (x + mean)));
   }
   const double reach = std::sqrt(reach2);
-  const bool search = is_broken(best) || best.shape < kGoodShape;
+  const bool search = is_broken(best) || best.shape < kGoodTet;
   constexpr std::array<Point3, 7> kWays = {
       {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {0.577, 0.577, 0.577}}};
   for (const double step : kSteps) {

@@ -92,7 +92,7 @@ bool Surgery::all_within(std::span<const NewTet> tets,
   return true;
 }
 
-// Bounds come before shapes, those that must be kept before those that the input excuses from.
+// Bounds come before shapes, those that must be kept before those that the input exempts from.
 bool Surgery::better(const Worth& now, const Worth& before) {
   if (now.shape <= 0) return false;
   const bool shapelier = now.shape > before.shape * (1 + kGain);
@@ -124,9 +124,9 @@ void Surgery::note_added() {
   }
 }
 
-void Surgery::take_back_trial() {
+void Surgery::roll_back() {
   ++edits_;
-  for (const TetId t : editor_.take_back_trial()) {
+  for (const TetId t : editor_.roll_back()) {
     const auto x = editor_.points({t, 0});
     shapes_[t] = min_dihedral_sine(x[0], x[1], x[2], x[3]);
   }

@@ -38,11 +38,11 @@ class Surgery {
   // From now on no bound on size is broken for the sake of the ratio: no refinement follows.
   void keep_size() { size_kept_ = true; }
 
-  // Operations as parts of a trial: begin_trial(), some of them, and then they stay or everything
+  // Operations as parts of a trial: begin(), some of them, and then they stay or everything
   // is as it was.
-  void begin_trial() { editor_.begin_trial(); }
-  void keep_trial() { editor_.keep_trial(); }
-  void take_back_trial();
+  void begin() { editor_.begin(); }
+  void commit() { editor_.commit(); }
+  void roll_back();
   // Flips, merges and insertions may then make shapes worse, down to tetrahedra of some degrees,
   // and break bounds: as the first operation of a trial, for others to mend.
   void set_lenient(bool lenient) { lenient_ = lenient; }
@@ -95,7 +95,7 @@ class Surgery {
   struct Worth {
     double shape = 2;   // the smallest
     double excess = 0;  // the largest, of bounds that must be kept
-    double exempt = 0;  // the largest of the ratio where the input excuses from it
+    double exempt = 0;  // the largest of the ratio where the input exempts from it
   };
   [[nodiscard]] double excess_of(const TetMeasures& m, std::int32_t region, bool exempt) const;
   void include(

@@ -33,7 +33,7 @@ struct InitialTetrahedralization {
   std::vector<std::int32_t> facet_markers;    // Tet::facet is an index of these
   std::vector<std::int32_t> segment_markers;  // of the ids in mesh.edges(); the axis has its own, 0
   // The facets are a tessellation of some shape: angles within and between them that come of
-  // tessellating excuse nothing; only sharp edges of the shape do.
+  // tessellating exempt from nothing; only sharp edges of the shape do.
   bool tessellated = false;
   // With ignore_markers: regions of the copies, by seeds; see cells/build_cell_mesh.
   std::vector<SectorRegion> seeds;

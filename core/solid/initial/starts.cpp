@@ -7,20 +7,6 @@
 namespace symcell::solid {
 namespace {
 
-// Sectors that are tried before a model is given up.
-constexpr std::int32_t kMaxSectors = 40;
-// Triangles that are worked on for the sake of a better cut, and sectors that are compared.
-constexpr std::size_t kCompareBudget = 150'000;
-constexpr std::size_t kMostCompared = 8;
-// After so many triangles a sector without narrow corners is good enough, and at once where two in
-// a row cost the same up to this factor.
-constexpr std::size_t kEnoughCompared = 7'000;
-constexpr double kAlike = 1.001;
-// What a sector costs more than the one before, for the same triangles.
-constexpr double kLaterCost = 0.05;
-// Sectors that promise a mesh larger by this factor than one that went well are left out.
-constexpr double kMostCostlier = 2.5;
-
 bool is_limit(ErrorCode code) {
   return code == ErrorCode::kCancelled || code == ErrorCode::kTimeLimit ||
          code == ErrorCode::kMemoryLimit || code == ErrorCode::kElementLimit;
@@ -33,8 +19,8 @@ bool is_worth_another_sector(ErrorCode code) {
 
 }  // namespace
 
-Starts::Starts(const SectorSource& source)
-    : source_(source), most_(std::min(source.candidates(), kMaxSectors)) {
+Starts::Starts(const SectorSource& source, const StartLimits& limits)
+    : source_(source), limits_(limits), most_(std::min(source.candidates(), limits.sectors)) {
 }
 
 // Whether a cut more is worth its time, before any is meshed.
@@ -42,15 +28,15 @@ bool Starts::is_worth_comparing() const {
   if (next_ == 0) return true;
   if (next_ == source_.preferred() && !sectors_.empty()) return false;
   const std::size_t one_more = effort_ / static_cast<std::size_t>(next_);
-  return next_ < most_ && sectors_.size() < kMostCompared && effort_ > 0 &&
-         effort_ + one_more <= kCompareBudget;
+  return next_ < most_ && sectors_.size() < limits_.compared && effort_ > 0 &&
+         effort_ + one_more <= limits_.compare_budget;
 }
 
 // Whether the last cut made no difference.
 bool Starts::cuts_are_alike() const {
   if (sectors_.size() < 2) return false;
   const double ratio = sectors_.back().meshing_cost / sectors_[sectors_.size() - 2].meshing_cost;
-  return 1 / kAlike < ratio && ratio < kAlike;
+  return 1 / limits_.alike < ratio && ratio < limits_.alike;
 }
 
 Result<void> Starts::cut_one_more(ExecutionContext& context) {
@@ -69,11 +55,11 @@ Result<InitialTetrahedralization> Starts::next(ExecutionContext& context) {
     while (is_worth_comparing()) {
       SYMCELL_TRY(cut_one_more(context));
       const bool good = !sectors_.empty() && sectors_.back().narrow_corners == 0;
-      if (good && (effort_ >= kEnoughCompared || cuts_are_alike())) break;
+      if (good && (effort_ >= limits_.enough_compared || cuts_are_alike())) break;
     }
     // Among much the same the earlier is the better one: it was cut where there is more room.
     for (std::size_t i = 0; i < sectors_.size(); ++i) {
-      sectors_[i].meshing_cost *= 1 + kLaterCost * static_cast<double>(i);
+      sectors_[i].meshing_cost *= 1 + limits_.later_cost * static_cast<double>(i);
     }
     std::stable_sort(sectors_.begin(), sectors_.end(), [](const Sector& a, const Sector& b) {
       return a.meshing_cost > b.meshing_cost;
@@ -86,7 +72,7 @@ Result<InitialTetrahedralization> Starts::next(ExecutionContext& context) {
     }
     const Sector sector = std::move(sectors_.back());
     sectors_.pop_back();
-    if (sector.meshing_cost > kMostCostlier * cost_) continue;
+    if (sector.meshing_cost > limits_.most_costlier * cost_) continue;
     auto solid = tetrahedralize_sector(sector, context);
     if (solid) {
       cost_ = std::min(cost_, sector.meshing_cost);

@@ -9,13 +9,14 @@
 #include "core/base/execution_context.hpp"
 #include "core/solid/initial/initial_tetrahedralization.hpp"
 #include "core/solid/sector/sector_source.hpp"
+#include "core/solid/tuning.hpp"
 
 namespace symcell::solid {
 
 class Starts {
  public:
   // `source` must outlive the object.
-  explicit Starts(const SectorSource& source);
+  explicit Starts(const SectorSource& source, const StartLimits& limits = {});
 
   // Whether sectors are left that were not tried.
   [[nodiscard]] bool has_next() const { return !sectors_.empty() || next_ < most_; }
@@ -34,6 +35,7 @@ class Starts {
   [[nodiscard]] Result<void> cut_one_more(ExecutionContext& context);
 
   const SectorSource& source_;
+  StartLimits limits_;
   std::int32_t most_;
   std::int32_t next_ = 0;  // candidate of the source
   std::size_t effort_ = 0;

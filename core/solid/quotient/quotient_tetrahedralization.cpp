@@ -296,7 +296,7 @@ void QuotientTetrahedralization::set_segment(const EdgeKey& edge, std::int32_t s
   }
 }
 
-void QuotientTetrahedralization::begin_trial() {
+void QuotientTetrahedralization::begin() {
   SYMCELL_ASSERT(!trial_.open);
   trial_.open = true;
   trial_.tets.clear();
@@ -309,7 +309,7 @@ void QuotientTetrahedralization::begin_trial() {
   trial_.free_vertices.clear();
 }
 
-std::vector<TetId> QuotientTetrahedralization::take_back_trial() {
+std::vector<TetId> QuotientTetrahedralization::roll_back() {
   SYMCELL_ASSERT(trial_.open);
   trial_.open = false;
   std::vector<TetId> written;

@@ -199,13 +199,13 @@ class QuotientTetrahedralization {
     return replace({}, tets, Outlines::kNew, {});
   }
 
-  // Edits that may turn out to be of no use: what they overwrite is kept from begin_trial() on,
+  // Edits that may turn out to be of no use: what they overwrite is kept from begin() on,
   // until they are to stay or everything is as it was. Trials do not nest, and nothing is compacted
   // meanwhile.
-  void begin_trial();
-  void keep_trial() { trial_.open = false; }
+  void begin();
+  void commit() { trial_.open = false; }
   // Returns the tetrahedra whose slots were written to.
-  std::vector<TetId> take_back_trial();
+  std::vector<TetId> roll_back();
   // A tetrahedron whose corners were moved is another one.
   void bump_version(TetId t) {
     if (trial_.open) keep(t);

@@ -1,4 +1,4 @@
-// What makes a tetrahedron bad, and which the input itself excuses.
+// What makes a tetrahedron bad, and which the input itself exempts.
 //
 // Bounds: radius-edge ratio, volume (global and of the region), longest edge. Exempt from the ratio
 // are tetrahedra with a corner on a sharp feature of the input (dihedral angle at a segment, or
@@ -73,7 +73,7 @@ class Criteria {
     return exemption(mesh, v) == Exemption::kSmallInputAngle;
   }
   // A vertex of the input where segments of one facet meet at a small angle, or on a sharp segment:
-  // excused or not, segments are divided in shells around it.
+  // exempt or not, segments are divided in shells around it.
   [[nodiscard]] bool acute_vertex(const QuotientTetrahedralization& mesh, VertexId v) const {
     return mesh.kind(v) == VertexKind::kInput && acute_vertices_[static_cast<std::size_t>(v)] != 0;
   }

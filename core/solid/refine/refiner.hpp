@@ -80,7 +80,7 @@ class Refiner {
     double shortest = 0;  // edge of the bad tetrahedron
     double least = 0;     // no vertex may be nearer to the new point than this, size aside
     bool size = false;    // because of volume or edge length
-    bool spare = false;   // excused by the input: no edge may get shorter for its sake
+    bool spare = false;   // exempt by the input: no edge may get shorter for its sake
     std::uint8_t depth = 0;
   };
   struct Entry {

@@ -14,10 +14,11 @@ class CurveFinder {
   Result<CutCurves> run() {
     SYMCELL_TRY(collect());
     CutCurves curves;
-    if (!follow(next_lower_, curves.lower) || !follow(next_upper_, curves.upper)) {
+    if (!follow(next_lower_, curves.lower) || !follow(next_upper_, curves.higher)) {
       return fail(ErrorCode::kInternal, "a curve of the cut ends in the open");
     }
-    for (CutCurve& curve : curves.upper) std::reverse(curve.vertices.begin(), curve.vertices.end());
+    for (CutCurve& curve : curves.higher)
+      std::reverse(curve.vertices.begin(), curve.vertices.end());
     return curves;
   }
 
@@ -40,8 +41,8 @@ class CurveFinder {
         return;
       }
       const bool lower = patch_.on_lower[a] != 0 && patch_.on_lower[b] != 0;
-      const bool upper = patch_.on_upper[a] != 0 && patch_.on_upper[b] != 0;
-      if (lower == upper) {
+      const bool higher = patch_.on_higher[a] != 0 && patch_.on_higher[b] != 0;
+      if (lower == higher) {
         result = fail(ErrorCode::kInternal, "an open edge lies off the cut");
         return;
       }

@@ -19,7 +19,7 @@ struct CutCurve {
 
 struct CutCurves {
   std::vector<CutCurve> lower;
-  std::vector<CutCurve> upper;
+  std::vector<CutCurve> higher;
 };
 
 // Errors: kInternal (an open edge off the cuts, a pinch, an edge on the axis).

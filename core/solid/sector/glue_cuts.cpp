@@ -43,7 +43,7 @@ class Gluer {
     partner_.assign(patch_.points.size(), -1);
     for (std::size_t i = 0; i < curves_.lower.size(); ++i) {
       SYMCELL_TRY(context_.check());
-      if (!match(curves_.lower[i], curves_.upper[pair_of_[i]])) {
+      if (!match(curves_.lower[i], curves_.higher[pair_of_[i]])) {
         return fail(ErrorCode::kInternal, "the curves of the two cuts differ");
       }
     }
@@ -53,28 +53,28 @@ class Gluer {
  private:
   Result<void> pair_curves() {
     const std::size_t count = curves_.lower.size();
-    if (count != curves_.upper.size()) {
+    if (count != curves_.higher.size()) {
       return fail(ErrorCode::kInternal, "the two cuts have different numbers of curves");
     }
-    std::vector<std::vector<Point2>> upper;
-    for (const CutCurve& c : curves_.upper) upper.push_back(curve_points(patch_, c));
+    std::vector<std::vector<Point2>> higher;
+    for (const CutCurve& c : curves_.higher) higher.push_back(curve_points(patch_, c));
     std::vector<bool> taken(count, false);
     for (const CutCurve& curve : curves_.lower) {
       const std::vector<Point2> points = curve_points(patch_, curve);
       double best = reach_;
       std::size_t best_at = count;
       for (std::size_t k = 0; k < count; ++k) {
-        const CutCurve& other = curves_.upper[k];
+        const CutCurve& other = curves_.higher[k];
         if (taken[k] || other.closed != curve.closed) continue;
         if (curve.closed) {
-          if (!near_boxes(points, upper[k]) || twice_area(points) * twice_area(upper[k]) < 0) {
+          if (!near_boxes(points, higher[k]) || twice_area(points) * twice_area(higher[k]) < 0) {
             continue;
           }
         } else if (curve.vertices.front() != other.vertices.front() ||
                    curve.vertices.back() != other.vertices.back()) {
           continue;
         }
-        const double apart = curve_distance(points, upper[k]);
+        const double apart = curve_distance(points, higher[k]);
         if (apart <= best) {
           best = apart;
           best_at = k;
@@ -117,7 +117,7 @@ class Gluer {
   [[nodiscard]] std::int32_t add_vertex(Point3 p, bool lower) {
     patch_.points.push_back(p);
     patch_.on_lower.push_back(lower ? 1 : 0);
-    patch_.on_upper.push_back(lower ? 0 : 1);
+    patch_.on_higher.push_back(lower ? 0 : 1);
     partner_.push_back(-1);
     return static_cast<std::int32_t>(patch_.points.size()) - 1;
   }
@@ -155,10 +155,10 @@ class Gluer {
     }
   }
 
-  // Turns both closed curves so that their first vertices match; may add one to the upper curve.
-  void align(CutCurve& lower, CutCurve& upper) {
-    const std::vector<Point2> a = curve_points(patch_, lower), b = curve_points(patch_, upper);
-    const std::size_t na = lower.vertices.size(), nb = upper.vertices.size();
+  // Turns both closed curves so that their first vertices match; may add one to the higher curve.
+  void align(CutCurve& lower, CutCurve& higher) {
+    const std::vector<Point2> a = curve_points(patch_, lower), b = curve_points(patch_, higher);
+    const std::size_t na = lower.vertices.size(), nb = higher.vertices.size();
     std::vector<std::pair<double, std::size_t>> corners;
     for (std::size_t i = 0; i < na; ++i) {
       corners.emplace_back(-turning(a[(i + na - 1) % na], a[i], a[i + 1]), i);
@@ -186,27 +186,27 @@ class Gluer {
           edge = j;
         }
       }
-      const std::int32_t p = upper.vertices[edge], q = upper.vertices[(edge + 1) % nb];
+      const std::int32_t p = higher.vertices[edge], q = higher.vertices[(edge + 1) % nb];
       const Point2 d = b[edge + 1] - b[edge];
       const double t =
           std::clamp(dot(a[start_a] - b[edge], d) / squared_length(d), kSpacing, 1 - kSpacing);
       const std::int32_t v =
           add_vertex(patch_.points[p] + t * (patch_.points[q] - patch_.points[p]), false);
       split_edge(p, q, {v});
-      upper.vertices.insert(upper.vertices.begin() + static_cast<std::ptrdiff_t>(edge) + 1, v);
+      higher.vertices.insert(higher.vertices.begin() + static_cast<std::ptrdiff_t>(edge) + 1, v);
       start_b = edge + 1;
     }
     std::rotate(lower.vertices.begin(),
                 lower.vertices.begin() + static_cast<std::ptrdiff_t>(start_a),
                 lower.vertices.end());
-    std::rotate(upper.vertices.begin(),
-                upper.vertices.begin() + static_cast<std::ptrdiff_t>(start_b),
-                upper.vertices.end());
+    std::rotate(higher.vertices.begin(),
+                higher.vertices.begin() + static_cast<std::ptrdiff_t>(start_b),
+                higher.vertices.end());
   }
 
-  [[nodiscard]] bool match(CutCurve& lower, CutCurve& upper) {
-    if (lower.closed) align(lower, upper);
-    const std::vector<Point2> a = curve_points(patch_, lower), b = curve_points(patch_, upper);
+  [[nodiscard]] bool match(CutCurve& lower, CutCurve& higher) {
+    if (lower.closed) align(lower, higher);
+    const std::vector<Point2> a = curve_points(patch_, lower), b = curve_points(patch_, higher);
     const std::vector<CurveMatch> matches = match_curves(a, b, merge_);
     if (matches.empty()) return false;
     const auto vertex = [](const CutCurve& c, std::int32_t i) {
@@ -215,7 +215,7 @@ class Gluer {
     std::vector<std::int32_t> on_a, on_b;  // patch vertices of the common curve
     for (const CurveMatch& m : matches) {
       on_a.push_back(m.a < 0 ? -1 : vertex(lower, m.a));
-      on_b.push_back(m.b < 0 ? -1 : vertex(upper, m.b));
+      on_b.push_back(m.b < 0 ? -1 : vertex(higher, m.b));
     }
     fill(on_a, on_b, true);
     fill(on_b, on_a, false);
@@ -290,7 +290,7 @@ class Gluer {
     for (std::size_t v = 0; v < patch_.points.size(); ++v) {
       if (partner_[v] >= 0) continue;
       const auto id = static_cast<std::int32_t>(v);
-      if (patch_.on_upper[v] != 0 && !patch_.on_axis(id)) {
+      if (patch_.on_higher[v] != 0 && !patch_.on_axis(id)) {
         return fail(ErrorCode::kInternal, "a vertex of the higher cut has no partner");
       }
       orbit[v] = static_cast<std::int32_t>(s.points.size());
@@ -315,7 +315,7 @@ class Gluer {
   double merge_;
   ExecutionContext& context_;
   CutCurves curves_;
-  std::vector<std::size_t> pair_of_;   // upper curve of each lower one
+  std::vector<std::size_t> pair_of_;   // higher curve of each lower one
   std::vector<std::int32_t> partner_;  // of vertices of the higher cut: theirs on the lower one
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> boundary_;  // edge -> triangle
   double largest_move_ = 0;

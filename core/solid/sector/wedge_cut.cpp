@@ -49,7 +49,7 @@ class Cutter {
     patch_.start_angle = start_angle;
     patch_.points = surface.points;
     patch_.on_lower.assign(surface.points.size(), 0);
-    patch_.on_upper.assign(surface.points.size(), 0);
+    patch_.on_higher.assign(surface.points.size(), 0);
     patch_.triangles = surface.triangles;
     patch_.normals.reserve(surface.triangles.size());
     for (const Triangle& t : surface.triangles) {
@@ -85,16 +85,16 @@ class Cutter {
     return patch_.on_lower[v] != 0 ? 0 : lower_.height(point(v));
   }
   [[nodiscard]] double below_upper(std::int32_t v) const {
-    return patch_.on_upper[v] != 0 ? 0 : -upper_.height(point(v));
+    return patch_.on_higher[v] != 0 ? 0 : -upper_.height(point(v));
   }
   // Fold 2: of vertices in the plane, on which side of the axis.
   [[nodiscard]] double along_plane(std::int32_t v) const {
-    return patch_.on_lower[v] == 0 || patch_.on_upper[v] != 0 ? 0 : lower_.radius(point(v));
+    return patch_.on_lower[v] == 0 || patch_.on_higher[v] != 0 ? 0 : lower_.radius(point(v));
   }
 
   void put_on_axis(std::int32_t v) {
     patch_.points[v] = {0, 0, patch_.points[v].z};
-    patch_.on_lower[v] = patch_.on_upper[v] = 1;
+    patch_.on_lower[v] = patch_.on_higher[v] = 1;
   }
   void put_on_lower(std::int32_t v) {
     patch_.points[v] = lower_.at(lower_.radius(point(v)), point(v).z);
@@ -102,7 +102,7 @@ class Cutter {
   }
   void put_on_upper(std::int32_t v) {
     patch_.points[v] = upper_.at(upper_.radius(point(v)), point(v).z);
-    patch_.on_upper[v] = 1;
+    patch_.on_higher[v] = 1;
   }
 
   // Less near the axis, where the sector is narrow.
@@ -202,13 +202,13 @@ class Cutter {
     patch_.points.push_back(point(a) + t * (point(b) - point(a)));
     // A crossing of an edge that lies in one plane already is on the axis.
     const bool on_lower = patch_.on_lower[a] != 0 && patch_.on_lower[b] != 0;
-    const bool on_upper = patch_.on_upper[a] != 0 && patch_.on_upper[b] != 0;
+    const bool on_higher = patch_.on_higher[a] != 0 && patch_.on_higher[b] != 0;
     patch_.on_lower.push_back(0);
-    patch_.on_upper.push_back(0);
+    patch_.on_higher.push_back(0);
     const Point3& p = point(v);
     if (std::hypot(p.x, p.y) <= axis_snap_ || value == &Cutter::along_plane ||
         (value == &Cutter::below_upper && on_lower) ||
-        (value == &Cutter::above_lower && on_upper)) {
+        (value == &Cutter::above_lower && on_higher)) {
       put_on_axis(v);
     } else if (value == &Cutter::above_lower) {
       put_on_lower(v);
@@ -242,10 +242,10 @@ class Cutter {
   // Fold 2: one plane, two half-planes.
   void mark_halves() {
     for (std::size_t v = 0; v < patch_.points.size(); ++v) {
-      if (patch_.on_lower[v] == 0 || patch_.on_upper[v] != 0) continue;
+      if (patch_.on_lower[v] == 0 || patch_.on_higher[v] != 0) continue;
       if (lower_.radius(patch_.points[v]) > 0) continue;
       patch_.on_lower[v] = 0;
-      patch_.on_upper[v] = 1;
+      patch_.on_higher[v] = 1;
     }
   }
 
@@ -259,13 +259,13 @@ class Cutter {
       if (number[v] < 0) continue;
       patch_.points[next] = patch_.points[v];
       patch_.on_lower[next] = patch_.on_lower[v];
-      patch_.on_upper[next] = patch_.on_upper[v];
+      patch_.on_higher[next] = patch_.on_higher[v];
       number[v] = next++;
     }
     const auto count = static_cast<std::size_t>(next);
     patch_.points.resize(count);
     patch_.on_lower.resize(count);
-    patch_.on_upper.resize(count);
+    patch_.on_higher.resize(count);
     for (Triangle& t : patch_.triangles) {
       for (std::int32_t& v : t) v = number[v];
     }

@@ -15,11 +15,11 @@ struct WedgePatch {
   double start_angle = 0;
   std::vector<Point3> points;
   std::vector<std::uint8_t> on_lower;  // exactly in the half-plane; on the axis both are set
-  std::vector<std::uint8_t> on_upper;
+  std::vector<std::uint8_t> on_higher;
   std::vector<Triangle> triangles;
   std::vector<Point3> normals;  // unit normals of the triangles these were cut from
 
-  [[nodiscard]] bool on_axis(std::int32_t v) const { return on_lower[v] != 0 && on_upper[v] != 0; }
+  [[nodiscard]] bool on_axis(std::int32_t v) const { return on_lower[v] != 0 && on_higher[v] != 0; }
 };
 
 // Requires: `surface` closed, in the local frame; fold >= 2.  `snap`: vertices nearer than this to

@@ -17,7 +17,7 @@ namespace {
 constexpr double kSmoothCosine = 0.82;
 constexpr double kSmoothShare = 0.5;
 // Of the boundary: a side to a neighbour that counts.
-constexpr double kTellingShare = 0.2;
+constexpr double kSignificantShare = 0.2;
 
 // A strip narrower than so many deviations is in the way of better triangles.
 constexpr double kLeastWidth = 8;
@@ -125,7 +125,7 @@ Result<void> dissolve_narrow_patches(QuotientSurface& surface, double most) {
   if (!found) return error_of(found);
   for (const SmoothSide& side : found->sides) {
     PatchFigures& f = found->patches[side.patch];
-    if (side.length < kTellingShare * f.boundary) continue;
+    if (side.length < kSignificantShare * f.boundary) continue;
     // Two chords that turn by the angle, one instead: so far is the point between them from it.
     const double own = f.width();
     const double next = side.other >= 0 ? found->patches[side.other].width() : own;

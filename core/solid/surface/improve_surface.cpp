@@ -22,7 +22,7 @@ namespace {
 // Shape of a triangle: height over longest side; 0.87 is equilateral. A collapse may leave shapes
 // this good, or no worse than they were; flips and moves mend them. At 0.3 regular fine meshes stay
 // as they are, at 0.15 shapes suffer for few triangles less.
-constexpr double kGoodShape = 0.25;
+constexpr double kGoodTriangle = 0.25;
 // Triangles in planar patches get flipped later anyhow: they must only not be needles.
 constexpr double kGoodPlanarShape = 0.05;
 constexpr double kSliverShape = 0.02;
@@ -236,7 +236,7 @@ class Improver {
       note(p.id, p.points, after, after_planar);
       if (planar(p.id) && !keeps_plane(p)) return std::nullopt;
     }
-    if (shaping_ ? after <= kBetter * before : after < std::min(before, kGoodShape)) {
+    if (shaping_ ? after <= kBetter * before : after < std::min(before, kGoodTriangle)) {
       return std::nullopt;
     }
     if (after_planar < std::min(before_planar, kGoodPlanarShape)) return std::nullopt;
@@ -349,7 +349,7 @@ class Improver {
     // With corners (a, q, p) and (q, b, p): the new diagonal faces a and b.
     const double old_sum = angle_at(r[2], r[0], s[1]) + angle_at(r[1], r[0], s[1]);
     const double new_sum = angle_at(r[0], r[1], r[2]) + angle_at(s[1], s[0], s[2]);
-    return old_sum > new_sum + kDelaunayGain && after > kFitShape * std::min(before, kGoodShape);
+    return old_sum > new_sum + kDelaunayGain && after > kFitShape * std::min(before, kGoodTriangle);
   }
 
   Result<std::size_t> move_pass() {

@@ -23,7 +23,7 @@ constexpr std::size_t kManyFolds = 24;
 // The first look is about an axis not yet refined.
 constexpr double kRoughTolerances = 6;
 // Principal moments that differ by less tell no axis.
-constexpr double kEqualMoments = 0.01;
+constexpr double kSimilarMoments = 0.01;
 constexpr std::size_t kScannedDirections = 1500;
 // Half the spacing of those directions (radians) times half a diameter, as a share of it.
 constexpr double kScanReach = 0.025;
@@ -132,7 +132,7 @@ class Detector {
     }
     for (const Point3& d : mass_.directions) axes.push_back({origin, d});
     const auto& m = mass_.moments;
-    if (m[2] - m[0] < kEqualMoments * m[2]) {
+    if (m[2] - m[0] < kSimilarMoments * m[2]) {
       SYMCELL_TRY(scan(origin, axes));
     }
     return axes;

@@ -91,7 +91,7 @@ void ShapeSymmetry::choose_samples() {
     spread_.push_back(a + u * (surface_.points[c[1]] - a) + v * (surface_.points[c[2]] - a));
   }
   // Half of the quick samples are vertices: they are where the shape has its extremes.
-  for (std::size_t i = 0; i < kFitSamples; ++i) telling_.push_back(i);
+  for (std::size_t i = 0; i < kFitSamples; ++i) discriminating_.push_back(i);
 }
 
 // Each near the one before, so that a search can begin where the last one ended.
@@ -151,14 +151,14 @@ Result<ShapeError> ShapeSymmetry::error(const SymmetryAxis& axis,
 
 bool ShapeSymmetry::fits(const SymmetryAxis& axis, double angle, double reach) const {
   const double c = std::cos(angle), s = std::sin(angle);
-  for (std::size_t k = 0; k < telling_.size(); ++k) {
-    const std::size_t i = telling_[k];
+  for (std::size_t k = 0; k < discriminating_.size(); ++k) {
+    const std::size_t i = discriminating_[k];
     const Point3 p = i % 2 == 0 ? vertices_[i / 2 % vertices_.size()] : spread_[i / 2];
     if (tree_.within(axis.origin + rotate_about(axis.direction, c, s, p - axis.origin), reach)) {
       continue;
     }
-    std::rotate(telling_.begin(), telling_.begin() + static_cast<std::ptrdiff_t>(k),
-                telling_.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+    std::rotate(discriminating_.begin(), discriminating_.begin() + static_cast<std::ptrdiff_t>(k),
+                discriminating_.begin() + static_cast<std::ptrdiff_t>(k) + 1);
     return false;
   }
   return true;

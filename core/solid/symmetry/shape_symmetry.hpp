@@ -76,7 +76,8 @@ class ShapeSymmetry {
   std::vector<Point3> spread_;           // random points, evenly over the area
   mutable std::vector<Point3> samples_;  // of fold samples_fold_
   mutable std::int32_t samples_fold_ = 0;
-  mutable std::vector<std::size_t> telling_;  // samples of `fits`, the last that failed first
+  mutable std::vector<std::size_t>
+      discriminating_;  // samples of `fits`, the last that failed first
 };
 
 [[nodiscard]] Point3 turned(const SymmetryAxis& axis, double angle, Point3 p);

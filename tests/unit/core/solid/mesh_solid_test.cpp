@@ -175,7 +175,7 @@ double check_elements(const SymmetryCellMesh& cell, const MeshOptions& options) 
   return volume;
 }
 
-// Tetrahedra over the ratio that nothing in the model excuses.
+// Tetrahedra over the ratio that nothing in the model exempts.
 std::uint64_t left_over(const Statistics& statistics) {
   std::uint64_t sum = 0;
   for (const ExemptCount& e : statistics.exempt) {

@@ -112,7 +112,7 @@ inline std::vector<double> fingerprint(const QuotientTetrahedralization& mesh) {
   return all;
 }
 
-// Tetrahedra over a bound; `ratio_too`: the ratio counts, where nothing excuses it.
+// Tetrahedra over a bound; `ratio_too`: the ratio counts, where nothing exempts it.
 inline std::size_t count_bad(const Editor& editor,
                              const Criteria& criteria,
                              bool ratio_too = true) {

@@ -143,7 +143,7 @@ TEST(VerifyDamage, GoodCubesPass) {
   }
 }
 
-// The model's own pinches excuse those of the mesh; nothing else does.
+// The model's own pinches exempt those of the mesh; nothing else does.
 TEST(VerifyDamage, PinchesThatTheModelHasNot) {
   const MeshData squares = test::square_mesh(kEdgePair);
   EXPECT_EQ(shown(failed(squares, nullptr)), "cell.vertex_links full.vertex_links ");

@@ -162,10 +162,10 @@ TEST(ValidatePslg, FindsCrossingsAsAllPairsDo) {
           bad = bad || (lo < dot(u, u) && hi > 0);
         }
         if (a * b < 0 && c * d < 0) {
-          bool excused = false;
+          bool exempt = false;
           for (std::int32_t v = 0; v < 8; ++v)
-            excused = excused || (side(s, v) == 0 && side(t, v) == 0);
-          bad = bad || !excused;
+            exempt = exempt || (side(s, v) == 0 && side(t, v) == 0);
+          bad = bad || !exempt;
         }
       }
     }

@@ -121,11 +121,11 @@ TEST(QuotientTriangulation, RollbackRestoresAndCommitKeeps) {
       mesh.begin();
       insert_random_points(mesh, seed + 100, 15);
       EXPECT_FALSE(test::same_content(mesh, before));
-      mesh.rollback();
+      mesh.roll_back();
       EXPECT_TRUE(test::same_content(mesh, before));
       test::expect_delaunay(mesh);
 
-      // What follows a rollback, and what is committed, is as if nothing had been.
+      // What follows a roll_back, and what is committed, is as if nothing had been.
       QuotientTriangulation plain = before;
       insert_random_points(plain, seed + 200, 15);
       mesh.begin();

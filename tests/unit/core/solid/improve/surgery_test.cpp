@@ -340,7 +340,7 @@ TEST_P(SolidSurgeryFold, TrialsAreTakenBack) {
   int edits = 0;
   for (TetId t = 0; t < untouched.mesh.tet_slots() && edits < 4 * kMaxDone; ++t) {
     if (!mesh().alive(t)) continue;
-    surgery.begin_trial();
+    surgery.begin();
     for (const bool lenient : {true, false}) {
       surgery.set_lenient(lenient);
       for (std::uint32_t way = 0; way < 12 && mesh().alive(t); ++way) {
@@ -353,7 +353,7 @@ TEST_P(SolidSurgeryFold, TrialsAreTakenBack) {
       }
     }
     ASSERT_TRUE(test::is_valid(mesh(), volume_));
-    surgery.take_back_trial();
+    surgery.roll_back();
     ASSERT_EQ(test::fingerprint(mesh()), before);
   }
   EXPECT_GT(edits, kMaxDone);

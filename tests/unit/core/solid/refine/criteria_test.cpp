@@ -98,10 +98,10 @@ TEST(SolidCriteria, VerticesAreSharpByFaceAnglesUnlessTessellated) {
     solid.tessellated = true;
     const Criteria of_tessellation(solid, {});
     EXPECT_FALSE(of_tessellation.sharp_vertex(solid.mesh, 0));
-    // Not excused, but segments are divided in shells there all the same.
+    // Not exempt, but segments are divided in shells there all the same.
     EXPECT_EQ(of_tessellation.acute_vertex(solid.mesh, 0), deg < 70);
   }
-  // Sharp edges excuse in tessellated models too.
+  // Sharp edges exempt in tessellated models too.
   auto solid = wedge(60);
   solid.tessellated = true;
   EXPECT_TRUE(Criteria(solid, {}).sharp_vertex(solid.mesh, 0));
@@ -128,15 +128,15 @@ TEST(SolidCriteria, TheAxisExcusesAboveSixfold) {
   for (const std::int32_t fold : {6, 7, 64}) {
     const auto solid = test::prism(test::prism_shape(fold));
     const Criteria criteria(solid, {});
-    std::size_t excused = 0;
+    std::size_t exempt = 0;
     for (TetId t = 0; t < solid.mesh.tet_slots(); ++t) {
       bool at_axis = false;
       for (const VertexId v : solid.mesh.tet(t).v) at_axis = at_axis || solid.mesh.on_axis(v);
       const auto e = criteria.exemption(solid.mesh, solid.mesh.tet(t));
       EXPECT_EQ(e, at_axis && fold > 6 ? Exemption::kAxis : Exemption::kNone);
-      excused += e == Exemption::kAxis ? 1 : 0;
+      exempt += e == Exemption::kAxis ? 1 : 0;
     }
-    EXPECT_EQ(excused > 0, fold > 6);
+    EXPECT_EQ(exempt > 0, fold > 6);
   }
 }
 

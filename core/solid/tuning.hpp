@@ -1,0 +1,82 @@
+// The numbers that decide how much work goes into a solid, in one place, so that a benchmark can
+// sweep them: mesh_solid takes them as an argument. The values are those at which further work took
+// off less than a few percent of the tetrahedra of the benchmark's models (docs/benchmarks.md).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace symcell::solid {
+
+// How many sectors are cut and meshed. What a cut does to the surface's triangles and to the first
+// tetrahedralization shows in meshes that no size bound determines, up to twice as many tetrahedra.
+// Wanted are the fewest bad tetrahedra, then the fewest of all, where a poor angle counts as more.
+struct StartLimits {
+  // Cutting. Sectors that are tried before a model is given up.
+  std::int32_t sectors = 40;
+  // Triangles that are worked on for the sake of a better cut, and sectors that are compared.
+  std::size_t compare_budget = 150'000;
+  std::size_t compared = 8;
+  // After so many triangles a sector without narrow corners is good enough, and at once where two
+  // in a row cost the same up to this factor.
+  std::size_t enough_compared = 7'000;
+  double alike = 1.001;
+  double later_cost = 0.05;  // what a sector costs more than the one before, for the same triangles
+  double most_costlier =
+      2.5;  // sectors that promise a mesh larger than the best by this are left out
+
+  // Meshing. Meshes from different cuts, and where bad tetrahedra are left.
+  int meshes = 4;
+  int meshes_if_bad = 8;
+  int cells = 6;  // meshes made for want of one that a symmetry cell can be cut from
+  // Larger cells are meshed once, but for bad tetrahedra, and up to the second of these.
+  std::uint64_t small_cell = 8'000;
+  std::uint64_t mendable_cell = 60'000;
+  // Before its improvement a mesh of a further start may be larger than the best one by this factor.
+  std::uint64_t most_times_larger = 2;
+  // Triangles that are worked on for the sake of better or fewer tetrahedra.
+  std::size_t mend_budget = 40'000;
+  std::size_t start_budget = 4'000;
+  double sized_share = 2.5;  // of the tetrahedra that a size bound asks for: less, and it decides
+  // More bad tetrahedra than this share come of the input, whatever the cut; a few may not.
+  double hopeless_share = 0.01;
+  double few_bad = 20;
+  // A mesh with a dihedral angle of a sine below this counts as larger by a factor.
+  double poor_sine = 0.26;          // 15 degrees
+  double poor_exempt_sine = 0.087;  // 5 degrees: the input may have few more
+  double sized_poor_sine = 0.174;   // 10 degrees: large meshes take their time
+  double poor_factor = 1.5;
+};
+
+// Rounds of refinement and improvement of one mesh.
+struct RoundLimits {
+  // The improvement works on tetrahedra with a dihedral angle below this or above its supplement.
+  double goal_deg = 26;
+  double costly_goal_deg = 25;  // and may cost a vertex, or a detour, below this
+  int last_passes = 3;
+  // Full rounds: the second takes off 5 to 10 % of the tetrahedra, the third 2 to 5 %, each for a
+  // quarter more time, which large meshes are not given.
+  std::size_t rounds = 3;
+  std::size_t rounds_if_large = 2;
+  std::size_t large_cell = 5'000;
+  // Bad tetrahedra that are mended without a full round.
+  std::size_t few_bad = 10;
+  double few_bad_share = 5e-4;
+  // Rounds after which more than this share of the bad tetrahedra is left are the last: what is bad
+  // is the input's fault, and refinement only adds to it.
+  double least_progress = 0.9;
+  // What later runs of refinement add for the sake of shape is little in models without acute
+  // input. Where it is not, it is a cascade.
+  std::uint64_t most_growth = 4;
+  std::uint64_t least_growth = 2'000;
+  // For the sake of shape no edge gets shorter than this share of the shortest one of the first
+  // mesh, whatever the runs: into spikes of the input they would shrink without end.
+  double least_distance = 1.0 / 256;
+};
+
+struct Tuning {
+  StartLimits starts;
+  RoundLimits rounds;
+};
+
+}  // namespace symcell::solid
