@@ -13,7 +13,7 @@ build_packages=(
 # What tests run.
 test_packages=(curl gmsh python3 python3-numpy python3-scipy python3-yaml)
 # What the checks of .ci/run use beyond that.
-check_packages=(clang-format-14)
+check_packages=(clang-format-14 clang-tidy-14)
 # What .ci/nightly uses: clang with libFuzzer.
 nightly_packages=(clang-14 libclang-rt-14-dev)
 

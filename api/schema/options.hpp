@@ -1,5 +1,5 @@
 // The options object: the same names, types and ranges in JSON, query strings and on the command
-// line. One table in options.cpp defines them all.
+// line. One table in option_table.cpp defines them all.
 #pragma once
 
 #include <cstdint>

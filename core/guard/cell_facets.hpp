@@ -1,4 +1,4 @@
-// Facets of elements as check_cell looks at them. Internal to verify/.
+// Facets of elements as check_cell looks at them. Internal to guard/.
 #pragma once
 
 #include <array>

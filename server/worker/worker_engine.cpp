@@ -58,6 +58,7 @@ TaskOutcome WorkerEngine::run_once(const RequestMessage& request, ExecutionConte
   Result<WorkerPool::Lease> worker = pool_.acquire(context);
   if (!worker) return {error_of(worker)};
   const std::int64_t pid = (*worker)->pid();
+  logger_.info("worker_took", {{"pid", pid}, {"model", request.job.model.native()}});
   TaskOutcome outcome = (*worker)->run(request, context);
   pool_.give_back(std::move(*worker));
   if (outcome.end) {

@@ -1,5 +1,5 @@
 // One run of TetGen on a complex of polygons, in a process of its own, with what it made of the
-// boundary. For comparisons only: the program's own way to it is core/backends/tetgen_backend.
+// boundary. For comparisons only: the program's own way to it is core/solid/initial/tetgen.
 #pragma once
 
 #include <array>

@@ -53,14 +53,12 @@ class WorkersTest(unittest.TestCase):
     def workers(self):
         return workers_of(self.server.process.pid)
 
-    def busy_worker(self):
-        """The one that works: its processor time grows."""
+    def busy_worker(self, but=()):
+        """The worker that took a job last, as the log tells, once it is none of `but`."""
         def find():
-            before = {pid: cpu_ticks(pid) for pid in self.workers()}
-            time.sleep(0.1)
-            grown = [pid for pid in self.workers() if cpu_ticks(pid) > before.get(pid, 1 << 60) + 2]
-            return grown[0] if len(grown) == 1 else None
-        return until(find, "one worker is busy")
+            took = [e["pid"] for e in self.server.log_events() if e["event"] == "worker_took"]
+            return took[-1] if took and took[-1] not in but else None
+        return until(find, "a worker took the job")
 
     def running(self, options):
         job_id = self.server.submit(square(), options)["id"]
@@ -102,8 +100,7 @@ class WorkersTest(unittest.TestCase):
         killed = set()
         for _ in range(3):
             self.assertEqual(self.server.job(job_id)["state"], "running")
-            victim = self.busy_worker()
-            self.assertNotIn(victim, killed)
+            victim = self.busy_worker(killed)
             killed.add(victim)
             os.kill(victim, signal.SIGKILL)
         job = self.server.finished(job_id)

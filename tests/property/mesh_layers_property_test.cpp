@@ -1,6 +1,6 @@
 // Laws of the solid pipeline over random stacks of prisms: facets with several holes, islands and
 // gaps with material beyond, coplanar neighbours, edges that end inside others. As facets here, as
-// triangles in mesh_layer_surface_property_test.cpp. Seeds as in mesh_solid_property_test.cpp.
+// triangles in mesh_surface_property_test.cpp. Seeds as in mesh_solid_property_test.cpp.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,4 +1,4 @@
-// Checks of exact sectors: the invariants of solid_sector.hpp, and measures of the whole surface
+// Checks of exact sectors: the invariants of sector.hpp, and measures of the whole surface
 // restored from one.
 #pragma once
 

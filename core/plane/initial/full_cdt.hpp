@@ -19,7 +19,7 @@ namespace symcell::plane::initial {
 
 struct FaceInfo {
   std::int32_t subdomain = -1;  // index of FullCdt::subdomains
-  std::int32_t merged = -1;     // index of a merged face (quotient_from_cdt.cpp)
+  std::int32_t merged = -1;     // index of a merged face (initial_triangulation.cpp)
 };
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;

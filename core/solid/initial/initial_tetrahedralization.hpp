@@ -35,10 +35,10 @@ struct InitialTetrahedralization {
   // The facets are a tessellation of some shape: angles within and between them that come of
   // tessellating exempt from nothing; only sharp edges of the shape do.
   bool tessellated = false;
-  // With ignore_markers: regions of the copies, by seeds; see cells/build_cell_mesh.
+  // With ignore_markers: regions of the copies, by seeds; see cut/build_cell_mesh.
   std::vector<SectorRegion> seeds;
   bool regions_differ = false;
-  // What every mesh made from this one has to cover; see verify/facet_cover.hpp.
+  // What every mesh made from this one has to cover; see guard/facet_cover.hpp.
   FacetCover cover;
   double diameter = 0;  // of the model, about
   // Of edges in mesh.edges() that lie on the axis and on no segment.

@@ -1,4 +1,4 @@
-// Predicates of space over copies of vertices (orbit, exponent); see lifted_predicates.hpp: exact
+// Predicates of space over copies of vertices (orbit, exponent); as the plane's lifted_predicates.hpp: exact
 // where all corners have one exponent, elsewhere certain or kZero, "equal within rounding". Every
 // non-zero sign is true of the exact rotations, for every choice of representatives.
 //
