@@ -2,40 +2,50 @@
 
 #include <memory>
 #include <utility>
+#include <variant>
 
 #include "core/base/stopwatch.hpp"
 #include "core/plane/input/validate_pslg.hpp"
+#include "core/plane/mesh_pslg.hpp"
+#include "core/plane/symmetry/symmetrise.hpp"
 #include "core/solid/mesh_solid.hpp"
+#include "core/solid/sector/symmetrise.hpp"
 
 namespace symcell {
 namespace {
 
-void record(const solid::SectorSource& source, Statistics& statistics) {
-  const solid::Symmetry& found = source.symmetry();
+void record(const plane::SymmetricPslg& symmetric, Statistics& statistics) {
+  Statistics::Symmetry& reported = statistics.symmetry;
+  reported.fold = symmetric.fold;
+  reported.axis_origin = {symmetric.centre.x, symmetric.centre.y, 0};
+  reported.error_rel = symmetric.symmetry_error_rel;
+  reported.detected = symmetric.fold_detected;
+}
+
+void record(const std::unique_ptr<solid::SectorSource>& source, Statistics& statistics) {
+  const solid::Symmetry& found = source->symmetry();
   Statistics::Symmetry& reported = statistics.symmetry;
   reported.fold = found.fold;
   reported.axis_origin = found.frame.origin;
   reported.axis_direction = found.frame.direction();
   reported.error_rel = found.error_rel;
   reported.detected = found.fold_detected;
-  statistics.repairs = source.repairs();
+  statistics.repairs = source->repairs();
 }
 
-// `symmetrise`: the step from the model to a source of exact sectors.
-template <class Symmetrise>
-Result<MeshOutcome> mesh_with(const Symmetrise& symmetrise,
-                              const MeshOptions& options,
-                              ExecutionContext& context) {
+// `symmetrise` makes the model symmetric, `mesh` meshes what that gives.
+template <class Symmetrise, class Mesh>
+Result<MeshOutcome> run(const Symmetrise& symmetrise, const Mesh& mesh, ExecutionContext& context) {
   Stopwatch total, watch;
   context.report(Phase::kSymmetry, 0.02);
-  const Result<std::unique_ptr<solid::SectorSource>> source = symmetrise();
-  if (!source) return error_of(source);
+  const auto symmetric = symmetrise();
+  if (!symmetric) return error_of(symmetric);
   const double symmetry_ms = watch.lap();
-  Result<MeshOutcome> outcome = solid::mesh_solid(**source, options, context);
+  Result<MeshOutcome> outcome = mesh(*symmetric);
   if (!outcome) return outcome;
   Statistics& statistics = outcome->statistics;
-  record(**source, statistics);
-  statistics.timings_ms.symmetry += symmetry_ms;
+  record(*symmetric, statistics);
+  statistics.timings_ms.symmetry = symmetry_ms;
   statistics.timings_ms.total = total.lap();
   return outcome;
 }
@@ -51,15 +61,24 @@ Result<Inspection> widened(Result<Found> found) {
 Result<MeshOutcome> mesh_model(const Model& model,
                                const MeshOptions& options,
                                ExecutionContext& context) {
-  if (const auto* pslg = std::get_if<Pslg>(&model))
-    return plane::mesh_pslg(*pslg, options, context);
+  if (const auto* pslg = std::get_if<Pslg>(&model)) {
+    const auto symmetrise = [&]() -> Result<plane::SymmetricPslg> {
+      SYMCELL_TRY(plane::validate_pslg(*pslg, context));
+      return plane::symmetrise(*pslg, options, context);
+    };
+    const auto mesh = [&](const plane::SymmetricPslg& symmetric) {
+      return plane::mesh_pslg(symmetric, options, context);
+    };
+    return run(symmetrise, mesh, context);
+  }
+  const auto mesh = [&](const std::unique_ptr<solid::SectorSource>& source) {
+    return solid::mesh_solid(*source, options, context);
+  };
   if (const auto* plc = std::get_if<Plc>(&model)) {
-    return mesh_with([&] { return solid::symmetrise_plc(*plc, options, context); }, options,
-                     context);
+    return run([&] { return solid::symmetrise_plc(*plc, options, context); }, mesh, context);
   }
   const auto& surface = std::get<TriangleSurface>(model);
-  return mesh_with([&] { return solid::symmetrise_surface(surface, options, context); }, options,
-                   context);
+  return run([&] { return solid::symmetrise_surface(surface, options, context); }, mesh, context);
 }
 
 Result<Inspection> inspect_model(const Model& model,

@@ -19,7 +19,7 @@ struct FoldCandidate {
 
 struct PslgInspection {
   std::int32_t fold = 1;
-  Point2 center;
+  Point2 centre;
   double symmetry_error_rel = 0;
   double area = 0;  // of the meshed domain
   double diameter = 0;

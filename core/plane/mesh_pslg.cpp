@@ -12,13 +12,11 @@
 #include "core/plane/cut/cut_cell.hpp"
 #include "core/plane/delaunay/insert.hpp"
 #include "core/plane/initial/initial_triangulation.hpp"
-#include "core/plane/input/validate_pslg.hpp"
 #include "core/plane/quotient/segment_cover.hpp"
 #include "core/plane/quotient/validate.hpp"
 #include "core/plane/refine/coarsen.hpp"
 #include "core/plane/refine/criteria.hpp"
 #include "core/plane/refine/refiner.hpp"
-#include "core/plane/symmetry/symmetrise.hpp"
 
 namespace symcell::plane {
 namespace {
@@ -112,13 +110,13 @@ bool has_bad_triangle(const QuotientTriangulation& mesh, const Criteria& criteri
 Result<WorkDone> refine_from_starts(InitialTriangulation& start,
                                     Criteria& criteria,
                                     const MeshOptions& options,
-                                    Point2 center,
+                                    Point2 centre,
                                     ExecutionContext& context) {
   const auto attempt = [&](QuotientTriangulation& mesh, Criteria& own, int number) {
     const bool sample =
         !options.plain && (number > 0 || options.min_angle_deg >= kSamplingAngleDeg);
     return refine_and_coarsen(mesh, own,
-                              {center, !options.plain, sample ? kSamples : 0,
+                              {centre, !options.plain, sample ? kSamples : 0,
                                options.seed + static_cast<std::uint64_t>(number)},
                               context);
   };
@@ -159,13 +157,6 @@ Result<void> check_mesh(const QuotientTriangulation& mesh, const SegmentCover& w
   return compare_segment_covers(wanted, measure_segment_cover(mesh));
 }
 
-void record(const SymmetricPslg& symmetric, Statistics::Symmetry& out) {
-  out.fold = symmetric.fold;
-  out.axis_origin = {symmetric.center.x, symmetric.center.y, 0};
-  out.error_rel = symmetric.symmetry_error_rel;
-  out.detected = symmetric.fold_detected;
-}
-
 // Steiner points are the vertices behind the `input_orbits` of the symmetrised model, a centre that
 // was added included.
 void record(const WorkDone& work,
@@ -184,30 +175,23 @@ void record(const WorkDone& work,
 
 }  // namespace
 
-Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
+Result<MeshOutcome> mesh_pslg(const SymmetricPslg& symmetric,
                               const MeshOptions& options,
                               ExecutionContext& context) {
   MeshOutcome outcome;
   Statistics& stats = outcome.statistics;
-  Stopwatch total, watch;
-  context.report(Phase::kSymmetry, 0.02);
-  SYMCELL_TRY(validate_pslg(pslg, context));
-  auto symmetric = symmetrise(pslg, options, context);
-  if (!symmetric) return error_of(symmetric);
-  record(*symmetric, stats.symmetry);
-  stats.timings_ms.symmetry = watch.lap();
-
+  Stopwatch watch;
   context.report(Phase::kInitial, 0.08);
-  auto start = triangulate_initial(*symmetric, context);
+  auto start = triangulate_initial(symmetric, context);
   if (!start) return error_of(start);
   stats.timings_ms.initial = watch.lap();
 
   const SegmentCover wanted = measure_segment_cover(start->mesh);
   Criteria criteria(start->mesh, start->subdomains, options);
   SYMCELL_TRY(check_area_budget(*start, criteria, context));
-  const auto work = refine_from_starts(*start, criteria, options, symmetric->center, context);
+  const auto work = refine_from_starts(*start, criteria, options, symmetric.centre, context);
   if (!work) return error_of(work);
-  record(*work, start->mesh, symmetric->orbit_points.size(), stats.refinement);
+  record(*work, start->mesh, symmetric.orbit_points.size(), stats.refinement);
   stats.timings_ms.refine = watch.lap();
 
   context.report(Phase::kCell, 0.92, start->mesh.triangle_count(), 1);
@@ -216,14 +200,13 @@ Result<MeshOutcome> mesh_pslg(const Pslg& pslg,
   SYMCELL_TRY(count_exempt(start->mesh, criteria, stats));
   auto cut = cut_cell(start->mesh);
   if (!cut) return error_of(cut);
-  outcome.mesh = build_cell_mesh(*start, *cut, *symmetric);
+  outcome.mesh = build_cell_mesh(*start, *cut, symmetric);
   stats.timings_ms.cell = watch.lap();
   SYMCELL_TRY(check_cell(outcome.mesh));
   stats.timings_ms.check += watch.lap();
   if (options.order == 2) outcome.mesh = elevate_to_quadratic(outcome.mesh);
   measure_cell_2(outcome.mesh, stats);
   stats.timings_ms.cell += watch.lap();
-  stats.timings_ms.total = total.lap();
   stats.peak_memory_bytes = peak_memory_bytes();
   context.report(Phase::kDone, 1, stats.cell.elements, 1);
   return outcome;

@@ -40,7 +40,7 @@ MeshOptions sized_options(const Pslg& model, std::int32_t fold, double triangles
 
 MeshOutcome mesh(const Pslg& model, const MeshOptions& options) {
   ExecutionContext context;
-  return value_of(plane::mesh_pslg(model, options, context));
+  return value_of(mesh_model(model, options, context));
 }
 
 }  // namespace symcell::bench

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/execution_context.hpp"
-#include "core/plane/mesh_pslg.hpp"
+#include "core/mesh_model.hpp"
 #include "tests/property/mesh_laws.hpp"
 #include "tests/property/random_case.hpp"
 
@@ -18,7 +18,7 @@ TEST(MeshCellsProperty, MeshesKeepAllLaws) {
     ExecutionContext context;
     context.set_max_elements(c.options.max_elements);
     context.set_time_limit(c.options.time_limit_s);
-    const auto outcome = plane::mesh_pslg(c.model, c.options, context);
+    const auto outcome = mesh_model(c.model, c.options, context);
     if (!outcome) {
       const ErrorCode code = outcome.error().code;
       const bool excused = !c.must_succeed && (code == ErrorCode::kBoundUnreachable ||

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "core/base/execution_context.hpp"
-#include "core/plane/mesh_pslg.hpp"
+#include "core/mesh_model.hpp"
 #include "core/plane/symmetry/symmetrise.hpp"
 #include "tests/property/mesh_laws.hpp"
 #include "tests/property/random_case.hpp"
@@ -17,7 +17,7 @@ Result<MeshOutcome> mesh(const Pslg& model, const MeshOptions& options) {
   ExecutionContext context;
   context.set_max_elements(options.max_elements);
   context.set_time_limit(options.time_limit_s);
-  return plane::mesh_pslg(model, options, context);
+  return mesh_model(model, options, context);
 }
 
 template <class T>

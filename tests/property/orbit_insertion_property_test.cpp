@@ -10,7 +10,7 @@
 #include <map>
 
 #include "api/formats/model_reader.hpp"
-#include "core/plane/mesh_pslg.hpp"
+#include "core/mesh_model.hpp"
 #include "tests/property/orbit_insertion_reference.hpp"
 #include "tests/property/random_case.hpp"
 #include "tests/property/restored_mesh.hpp"
@@ -71,7 +71,7 @@ TEST(OrbitInsertion, RandomModels) {
     const RandomCase c = make_random_case(seed);
     ExecutionContext context;
     context.set_max_elements(c.options.max_elements);
-    const auto outcome = plane::mesh_pslg(c.model, c.options, context);
+    const auto outcome = mesh_model(c.model, c.options, context);
     if (!outcome) continue;  // MeshPslgProperty judges these
     std::ostringstream told;
     told << c;
@@ -90,7 +90,7 @@ void expect_equal_for_file(const std::filesystem::path& path) {
     options.ignore_markers = true;
     options.symmetry_tolerance_rel = 2e-4;
     ExecutionContext context;
-    const auto outcome = plane::mesh_pslg(std::get<Pslg>(*model), options, context);
+    const auto outcome = mesh_model(std::get<Pslg>(*model), options, context);
     ASSERT_TRUE(outcome) << outcome.error().message;
     expect_equal_to_reference(std::get<Pslg>(*model), outcome->mesh);
   }

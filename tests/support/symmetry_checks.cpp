@@ -70,7 +70,7 @@ void expect_symmetric_invariants(const plane::SymmetricPslg& symmetric, const Ps
   const Measures before = measures_of(input);
   const Measures after = measures_of(lifted);
   const double moved = (symmetric.symmetry_error_rel + 4e-15) * symmetric.diameter +
-                       4e-16 * length(symmetric.center);
+                       4e-16 * length(symmetric.centre);
   EXPECT_NEAR(after.area, before.area, 2 * moved * before.boundary + 1e-13 * before.area);
 }
 

@@ -20,7 +20,7 @@ class CellMeshBuilder {
 
   SymmetryCellMesh build() {
     out_.fold = mesh_.fold();
-    out_.axis_origin = {pslg_.center.x, pslg_.center.y, 0};
+    out_.axis_origin = {pslg_.centre.x, pslg_.centre.y, 0};
     orbit_.assign(mesh_.vertex_slots(), -1);
     first_node_.assign(mesh_.vertex_slots(), -1);
     add_elements();

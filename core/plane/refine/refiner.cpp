@@ -143,7 +143,7 @@ Result<void> Refiner::run() {
 
 Error Refiner::unreachable(TriangleId t) const {
   const Triangle& tri = mesh_.triangle(t);
-  const Point2 p = mesh_.corner_point(tri, 0) + settings_.center;
+  const Point2 p = mesh_.corner_point(tri, 0) + settings_.centre;
   char text[256];
   std::snprintf(text, sizeof text,
                 "the bounds cannot be reached near (%.9g, %.9g): edges shrink there without end; "
@@ -257,9 +257,9 @@ Refiner::Outcome Refiner::treat(TriangleId t) {
   if (settings_.samples > 0 && a.verdict == Verdict::kAngle && insert_sampled(t, a)) {
     return Outcome::kDone;
   }
-  const Outcome first = insert_for(t, off_center(t, a, false));
+  const Outcome first = insert_for(t, off_centre(t, a, false));
   if (first != Outcome::kStuck) return first;
-  return insert_for(t, off_center(t, a, true));
+  return insert_for(t, off_centre(t, a, true));
 }
 
 bool Refiner::relocate_corner_of(TriangleId t) {
@@ -279,7 +279,7 @@ bool Refiner::relocate_corner_of(TriangleId t) {
 
 // On the bisector of the shortest edge: the circumcentre, or nearer, where the new triangle just
 // keeps the bound [Ungor04].
-Point2 Refiner::off_center(TriangleId t, const Assessment& assessment, bool farther) const {
+Point2 Refiner::off_centre(TriangleId t, const Assessment& assessment, bool farther) const {
   const Triangle& tri = mesh_.triangle(t);
   const std::uint32_t s = assessment.shortest;
   const Point2 a = mesh_.corner_point(tri, next3(s)), b = mesh_.corner_point(tri, prev3(s));
@@ -354,7 +354,7 @@ Refiner::Outcome Refiner::insert_at(TriangleId home,
 // Other cavities than the off-centre's may have room for a good star: tries random points round the
 // off-centre. Pays at bounds near 40 degrees, where plain refinement cascades.
 bool Refiner::insert_sampled(TriangleId t, const Assessment& assessment) {
-  const Point2 middle = off_center(t, assessment, false);
+  const Point2 middle = off_centre(t, assessment, false);
   const double reach = kSampleReach * std::sqrt(assessment.shortest2);
   for (int i = 0; i < settings_.samples; ++i) {
     const double angle = 2 * std::numbers::pi * random_.uniform();

@@ -32,7 +32,7 @@ struct RefineCounters {
 class Refiner {
  public:
   struct Settings {
-    Point2 center;         // of the model, for messages
+    Point2 centre;         // of the model, for messages
     bool relocate = true;  // moves and star-optimal insertion
     // Points tried round a bad triangle for one with a good star before its off-centre is taken.
     int samples = 0;
@@ -66,7 +66,7 @@ class Refiner {
   [[nodiscard]] bool insert_sampled(TriangleId t, const Assessment& assessment);
   [[nodiscard]] std::optional<Point2> good_star_near(TriangleId home, Point2 x);
   [[nodiscard]] Outcome insert_at(TriangleId home, Point2 x, bool optimal, std::int32_t exponent);
-  [[nodiscard]] Point2 off_center(TriangleId t, const Assessment& assessment, bool farther) const;
+  [[nodiscard]] Point2 off_centre(TriangleId t, const Assessment& assessment, bool farther) const;
   [[nodiscard]] bool encroaches(const Cavity& cavity, Point2 x);
   [[nodiscard]] Result<void> tick();
   [[nodiscard]] Error unreachable(TriangleId t) const;

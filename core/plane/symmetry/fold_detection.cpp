@@ -15,9 +15,9 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-Point2 turn(Point2 p, Point2 center, double cosine, double sine) {
-  const Point2 q = p - center;
-  return {center.x + cosine * q.x - sine * q.y, center.y + sine * q.x + cosine * q.y};
+Point2 turn(Point2 p, Point2 centre, double cosine, double sine) {
+  const Point2 q = p - centre;
+  return {centre.x + cosine * q.x - sine * q.y, centre.y + sine * q.x + cosine * q.y};
 }
 
 std::vector<IndexedSegment> isolated_points(const PreparedPslg& prepared) {
@@ -52,13 +52,13 @@ std::vector<std::int32_t> multiples(std::int32_t fold, std::size_t samples) {
 FoldDetector::FoldDetector(const PreparedPslg& prepared,
                            const SegmentIndex& index,
                            double tolerance,
-                           const Point2* center)
+                           const Point2* centre)
     : prepared_(prepared),
       index_(index),
       isolated_(isolated_points(prepared)),
       tolerance_(std::max(tolerance, prepared.resolution())),
-      center_given_(center != nullptr),
-      center_(center != nullptr ? *center : prepared.centroid) {
+      centre_given_(centre != nullptr),
+      centre_(centre != nullptr ? *centre : prepared.centroid) {
   collect_samples();
   keep_discriminating_samples();
 }
@@ -94,7 +94,7 @@ void FoldDetector::keep_discriminating_samples() {
   };
   std::vector<Ranked> ranked(samples_.size());
   for (std::size_t i = 0; i < ranked.size(); ++i) {
-    ranked[i] = {distance(samples_[i].point, center_), static_cast<std::int32_t>(i), 0};
+    ranked[i] = {distance(samples_[i].point, centre_), static_cast<std::int32_t>(i), 0};
   }
   std::sort(ranked.begin(), ranked.end(), [](const Ranked& r, const Ranked& s) {
     return r.radius < s.radius || (r.radius == s.radius && r.sample < s.sample);
@@ -153,7 +153,7 @@ bool FoldDetector::passes_quickly(std::int32_t fold) const {
   // The centroid may be off by more than the tolerance where the shape is only nearly symmetric.
   const double reach = 4 * tolerance_;
   return std::all_of(samples_.begin(), samples_.end(), [&](const Sample& s) {
-    return miss(s, turn(s.point, center_, cosine, sine), cosine, sine, reach) <= reach;
+    return miss(s, turn(s.point, centre_, cosine, sine), cosine, sine, reach) <= reach;
   });
 }
 
@@ -165,7 +165,7 @@ double FoldDetector::arbitrary_angle_error() const {
     const double cosine = std::cos(angle);
     const double sine = std::sin(angle);
     for (const Sample& s : samples_) {
-      worst = std::max(worst, miss(s, turn(s.point, center_, cosine, sine), cosine, sine, reach));
+      worst = std::max(worst, miss(s, turn(s.point, centre_, cosine, sine), cosine, sine, reach));
       if (worst > reach) return worst;
     }
   }
@@ -215,18 +215,18 @@ void FoldDetector::judge(std::vector<FoldFit>& fits, double arbitrary) const {
 FoldFit FoldDetector::fit(std::int32_t fold) const {
   FoldFit result;
   result.fold = fold;
-  result.center = center_;
+  result.centre = centre_;
   measure(result);
-  if (center_given_ || fold == 1 || result.error <= 8 * prepared_.resolution()) return result;
+  if (centre_given_ || fold == 1 || result.error <= 8 * prepared_.resolution()) return result;
   FoldFit refined = result;
-  refined.center = refine_center(fold, center_);
+  refined.centre = refine_centre(fold, centre_);
   measure(refined);
   return refined.error < result.error ? refined : result;
 }
 
 // Gauss-Newton on the distances between the samples turned by about half a turn and the segments'
 // lines: there the error depends most on the centre.
-Point2 FoldDetector::refine_center(std::int32_t fold, Point2 center) const {
+Point2 FoldDetector::refine_centre(std::int32_t fold, Point2 centre) const {
   const double angle = 2 * std::numbers::pi * (fold / 2) / fold;
   const double cosine = std::cos(angle);
   const double sine = std::sin(angle);
@@ -235,7 +235,7 @@ Point2 FoldDetector::refine_center(std::int32_t fold, Point2 center) const {
     double xx = 0, xy = 0, yy = 0, bx = 0, by = 0;
     for (const Sample& s : samples_) {
       if (s.isolated) continue;
-      const Point2 image = turn(s.point, center, cosine, sine);
+      const Point2 image = turn(s.point, centre, cosine, sine);
       const SegmentIndex::Hit hit = index_.nearest(image, reach);
       if (hit.segment < 0) continue;
       const PreparedEdge& edge = prepared_.edges[at(hit.segment)];
@@ -243,7 +243,7 @@ Point2 FoldDetector::refine_center(std::int32_t fold, Point2 center) const {
       const Point2 u = prepared_.points[at(edge.b)] - a;
       const double size = length(u);
       const Point2 normal{-u.y / size, u.x / size};
-      // d(image)/d(center) = I - R.
+      // d(image)/d(centre) = I - R.
       const Point2 row{normal.x * (1 - cosine) - normal.y * sine,
                        normal.x * sine + normal.y * (1 - cosine)};
       const double residual = dot(normal, a - image);
@@ -254,12 +254,12 @@ Point2 FoldDetector::refine_center(std::int32_t fold, Point2 center) const {
       by += row.y * residual;
     }
     const double determinant = xx * yy - xy * xy;
-    if (!(determinant > 1e-9 * (xx + yy) * (xx + yy))) return center;
+    if (!(determinant > 1e-9 * (xx + yy) * (xx + yy))) return centre;
     const Point2 step{(bx * yy - by * xy) / determinant, (by * xx - bx * xy) / determinant};
-    center = center + step;
+    centre = centre + step;
     if (length(step) <= prepared_.resolution()) break;
   }
-  return center;
+  return centre;
 }
 
 void FoldDetector::measure(FoldFit& fit) const {
@@ -271,7 +271,7 @@ void FoldDetector::measure(FoldFit& fit) const {
     const double cosine = std::cos(angle);
     const double sine = std::sin(angle);
     for (const Sample& s : samples_) {
-      const Point2 image = turn(s.point, fit.center, cosine, sine);
+      const Point2 image = turn(s.point, fit.centre, cosine, sine);
       // Most searches end within the tolerance, which is much faster than an open one.
       double error = miss(s, image, cosine, sine, tolerance_);
       if (error > tolerance_) error = miss(s, image, cosine, sine, reach);
@@ -284,7 +284,7 @@ void FoldDetector::measure(FoldFit& fit) const {
   const double angle = 2 * std::numbers::pi / fit.fold;
   for (const Sample& s : samples_) {
     if (s.edge >= 0 || s.isolated) continue;
-    const Point2 image = turn(s.point, fit.center, std::cos(angle), std::sin(angle));
+    const Point2 image = turn(s.point, fit.centre, std::cos(angle), std::sin(angle));
     const double near = std::min(tolerance_, 0.1 * s.spacing);
     const SegmentIndex::Hit hit = index_.nearest(image, near);
     const auto meets = [&](std::int32_t v) {

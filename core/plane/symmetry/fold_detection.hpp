@@ -19,7 +19,7 @@ namespace symcell::plane {
 
 struct FoldFit {
   std::int32_t fold = 1;
-  Point2 center;
+  Point2 centre;
   double error = 0;               // input units
   std::int32_t worst_point = -1;  // of the prepared PSLG
   bool vertices_match = false;
@@ -32,7 +32,7 @@ class FoldDetector {
   FoldDetector(const PreparedPslg& prepared,
                const SegmentIndex& index,
                double tolerance,
-               const Point2* center);
+               const Point2* centre);
 
   // The folds above 1 that pass a first test, ascending, judged by the rules above.
   [[nodiscard]] Result<std::vector<FoldFit>> ladder(ExecutionContext& context) const;
@@ -56,7 +56,7 @@ class FoldDetector {
   [[nodiscard]] bool passes_quickly(std::int32_t fold) const;
   [[nodiscard]] double arbitrary_angle_error() const;
   [[nodiscard]] std::vector<std::int32_t> candidates(bool revolution) const;
-  [[nodiscard]] Point2 refine_center(std::int32_t fold, Point2 center) const;
+  [[nodiscard]] Point2 refine_centre(std::int32_t fold, Point2 centre) const;
   void measure(FoldFit& fit) const;
   void judge(std::vector<FoldFit>& fits, double arbitrary) const;
 
@@ -64,8 +64,8 @@ class FoldDetector {
   const SegmentIndex& index_;
   SegmentIndex isolated_;
   double tolerance_;
-  bool center_given_;
-  Point2 center_;
+  bool centre_given_;
+  Point2 centre_;
   std::vector<Sample> samples_;      // the most telling first
   std::int64_t smallest_class_ = 0;  // vertices at the rarest radius
 };

@@ -6,7 +6,7 @@
 
 #include "core/plane/symmetry/prepared_pslg.hpp"
 #include "core/plane/symmetry/symmetrise.hpp"
-#include "core/plane/symmetry/symmetriser.hpp"
+#include "core/plane/symmetry/symmetrise_subdomains.hpp"
 
 namespace symcell::plane {
 namespace {
@@ -71,7 +71,7 @@ Result<PslgInspection> inspect_pslg(const Pslg& pslg,
   const PreparedPslg prepared = prepare_pslg(pslg, *subdomains, options.ignore_markers);
   PslgInspection result;
   result.fold = symmetric->fold;
-  result.center = symmetric->center;
+  result.centre = symmetric->centre;
   result.symmetry_error_rel = symmetric->symmetry_error_rel;
   result.area = prepared.area;
   result.diameter = prepared.diameter;

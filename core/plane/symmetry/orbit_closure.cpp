@@ -39,7 +39,7 @@ class Closure {
 
   Result<ClosedOrbits> run() {
     result_.pslg.fold = request_.fold;
-    result_.pslg.center = request_.center;
+    result_.pslg.centre = request_.centre;
     result_.pslg.ignore_markers = prepared_.ignore_markers;
     choose_sector();
     assign_orbits();
@@ -58,7 +58,7 @@ class Closure {
  private:
   [[nodiscard]] std::int32_t fold() const { return request_.fold; }
   [[nodiscard]] Point2 local(std::int32_t point) const {
-    return prepared_.points[at(point)] - request_.center;
+    return prepared_.points[at(point)] - request_.centre;
   }
   [[nodiscard]] Point2 position(OrbitVertex v) const {
     return rotations_.rotate(result_.pslg.orbit_points[at(v.orbit)], v.exponent);
@@ -217,7 +217,7 @@ class Closure {
         note_error(distance(position(vertex_[at(*it)]), local(*it)), *it);
       }
     }
-    if (shifted > 0) result_.center_shift = (1 / static_cast<double>(shifted)) * shift;
+    if (shifted > 0) result_.centre_shift = (1 / static_cast<double>(shifted)) * shift;
   }
 
   // Cuts edges at the vertices that lie on them within the link distance, among them the copies
@@ -235,7 +235,7 @@ class Closure {
       SYMCELL_TRY(cut_at_orbit(o));
     }
     if (fold() > 1 && result_.pslg.centre_orbit < 0 &&
-        index_.nearest(request_.center, request_.link).segment >= 0) {
+        index_.nearest(request_.centre, request_.link).segment >= 0) {
       cut_at({centre_orbit(), 0}, -1);
     }
     std::sort(cuts_.begin(), cuts_.end(), [](const Cut& c, const Cut& d) {
@@ -272,7 +272,7 @@ class Closure {
       while (next < last && exponent_of(next) == k) ++next;
       if (cut_at({o, k}, member_[at(first)]) || exists) continue;
       const std::int32_t worst = member_[at(first)];
-      const auto hit = index_.nearest(position({o, k}) + request_.center, prepared_.diameter);
+      const auto hit = index_.nearest(position({o, k}) + request_.centre, prepared_.diameter);
       return not_symmetric("the image of " + describe_input(worst) + " under " +
                                std::to_string(rotations_.subtract(k, vertex_[at(worst)].exponent)) +
                                "/" + std::to_string(fold()) + " of a turn lies " +
@@ -294,7 +294,7 @@ class Closure {
   // errors.
   bool cut_at(OrbitVertex v, std::int32_t source) {
     bool found = false;
-    const Point2 p = position(v) + request_.center;
+    const Point2 p = position(v) + request_.centre;
     index_.within(p, request_.link, [&](std::int32_t e, double off) {
       const PreparedEdge& edge = prepared_.edges[at(e)];
       if (vertex_[at(edge.a)] == v || vertex_[at(edge.b)] == v) return;

@@ -16,7 +16,7 @@ namespace symcell::plane {
 
 struct ClosureRequest {
   std::int32_t fold = 1;
-  Point2 center;
+  Point2 centre;
   double link = 0;       // positions this near after rotation are copies of each other
   double tolerance = 0;  // largest move allowed; both in input units
 };
@@ -29,7 +29,7 @@ struct ClosedOrbits {
     std::int32_t right = kNotMeshed;
   };
   std::vector<Sides> sides;
-  Point2 center_shift;             // where the vertices would rather have the centre
+  Point2 centre_shift;             // where the vertices would rather have the centre
   std::int32_t worst_vertex = -1;  // point of the prepared PSLG that was moved most
 };
 

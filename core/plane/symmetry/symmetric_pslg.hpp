@@ -28,7 +28,7 @@ struct SymmetricSegment {
 
 struct SymmetricPslg {
   std::int32_t fold = 1;
-  Point2 center;                     // input coordinates
+  Point2 centre;                     // input coordinates
   std::vector<Point2> orbit_points;  // relative to the centre
   std::int32_t centre_orbit = -1;    // index in orbit_points, -1: the centre is no vertex
   std::vector<SymmetricSegment> segments;
@@ -43,7 +43,7 @@ struct SymmetricPslg {
   double symmetry_error_rel = 0;  // largest move of a vertex / diameter
   double diameter = 0;            // of the input, bounding-box diagonal
   bool fold_detected = false;
-  bool center_detected = false;
+  bool centre_detected = false;
 
   [[nodiscard]] std::int32_t segment_marker(std::size_t segment, std::int32_t copy) const {
     const auto first = static_cast<std::size_t>(segments[segment].first_marker);

@@ -10,7 +10,7 @@
 #include "core/plane/symmetry/lifted_check.hpp"
 #include "core/plane/symmetry/orbit_closure.hpp"
 #include "core/plane/symmetry/prepared_pslg.hpp"
-#include "core/plane/symmetry/symmetriser.hpp"
+#include "core/plane/symmetry/symmetrise_subdomains.hpp"
 
 namespace symcell::plane {
 namespace {
@@ -47,7 +47,7 @@ std::vector<IndexedSegment> positions_of(const PreparedPslg& prepared) {
 
 // The centre of a mesh without symmetry only fixes the origin of its coordinates. Far from the
 // origin a coarse multiple of a power of two near the middle: then subtracting it is exact.
-Point2 plain_center(const PreparedPslg& prepared) {
+Point2 plain_centre(const PreparedPslg& prepared) {
   const Point2 middle = prepared.box_low + 0.5 * (prepared.box_high - prepared.box_low);
   const double step = std::exp2(std::ceil(std::log2(prepared.diameter)));
   const auto coarse = [step](double x) {
@@ -79,7 +79,7 @@ class Symmetriser {
     if (ladder != nullptr) *ladder = *fits;
     for (auto fit = fits->rbegin(); fit != fits->rend(); ++fit) {
       if (!fit->kept) continue;
-      auto result = close(fit->fold, fit->center);
+      auto result = close(fit->fold, fit->centre);
       if (result) {
         result->fold_detected = true;
         return result;
@@ -95,16 +95,16 @@ class Symmetriser {
 
  private:
   Result<SymmetricPslg> without_symmetry() {
-    return close(1, options_.center ? *options_.center : plain_center(prepared_));
+    return close(1, options_.center ? *options_.center : plain_centre(prepared_));
   }
 
   Result<SymmetricPslg> declared(std::int32_t fold) {
     const FoldFit fit = detector_.fit(fold);
-    auto result = close(fold, fit.center);
+    auto result = close(fold, fit.centre);
     if (result || result.error().code != ErrorCode::kNotSymmetric) return result;
     const double limit = options_.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel);
     std::string message = "the model is not " + std::to_string(fold) + "-fold symmetric about " +
-                          describe_point(fit.center) + " within the tolerance of " +
+                          describe_point(fit.centre) + " within the tolerance of " +
                           describe_rounded(limit) + " of its diameter: ";
     Error error = result.error();
     // An infinite error means that only kinds differ; the closure names them.
@@ -122,10 +122,10 @@ class Symmetriser {
   }
 
   // Links copies as tightly as succeeds: a wide link would merge vertices that only lie close.
-  Result<SymmetricPslg> close(std::int32_t fold, Point2 center) {
+  Result<SymmetricPslg> close(std::int32_t fold, Point2 centre) {
     const double finest = std::min(prepared_.resolution(), 2 * tolerance_);
     for (double link = finest;; link = std::min(1000 * link, 2 * tolerance_)) {
-      auto result = close_linked({fold, center, link, std::max(tolerance_, finest)});
+      auto result = close_linked({fold, centre, link, std::max(tolerance_, finest)});
       if (result || result.error().code != ErrorCode::kNotSymmetric) return result;
       if (fold == 1 || link >= 2 * tolerance_) return result;
     }
@@ -134,10 +134,10 @@ class Symmetriser {
   Result<SymmetricPslg> close_linked(ClosureRequest request) {
     auto closed = close_orbits(prepared_, index_, request, context_);
     if (!closed) return error_of(closed);
-    const bool settled = length(closed->center_shift) <= 1e-3 * prepared_.resolution();
+    const bool settled = length(closed->centre_shift) <= 1e-3 * prepared_.resolution();
     if (request.fold > 1 && !options_.center && !settled) {
       ClosureRequest moved = request;
-      moved.center = request.center + closed->center_shift;
+      moved.centre = request.centre + closed->centre_shift;
       auto again = close_orbits(prepared_, index_, moved, context_);
       if (again && again->pslg.symmetry_error_rel <= closed->pslg.symmetry_error_rel) {
         closed = std::move(again);
@@ -145,16 +145,16 @@ class Symmetriser {
     }
     SymmetricPslg& result = closed->pslg;
     result.diameter = prepared_.diameter;
-    result.center_detected = !options_.center;
+    result.centre_detected = !options_.center;
     copy_seeds(result);
     SYMCELL_TRY(check_and_seed(*closed, context_));
     return std::move(result);
   }
 
   void copy_seeds(SymmetricPslg& result) const {
-    for (const Point2 hole : pslg_.holes) result.holes.push_back(hole - result.center);
+    for (const Point2 hole : pslg_.holes) result.holes.push_back(hole - result.centre);
     for (PslgRegion region : pslg_.regions) {
-      region.point = region.point - result.center;
+      region.point = region.point - result.centre;
       result.regions.push_back(region);
     }
   }

@@ -31,7 +31,7 @@ class CellFinder {
  public:
   CellFinder(const PlcComplex& complex, ExecutionContext& context)
       : complex_(complex), context_(context) {
-    center_ = 0.5 * (complex.box_low + complex.box_high);
+    centre_ = 0.5 * (complex.box_low + complex.box_high);
     // To a size near 1: sixth powers of the coordinates occur below.
     scale_ = std::exp2(-std::ilogb(complex.diameter));
     for (const Point3 p : complex.points) points_.push_back(placed(p));
@@ -53,7 +53,7 @@ class CellFinder {
   }
 
  private:
-  [[nodiscard]] Point3 placed(Point3 p) const { return tilt(scale_ * (p - center_)); }
+  [[nodiscard]] Point3 placed(Point3 p) const { return tilt(scale_ * (p - centre_)); }
   [[nodiscard]] Point3 corner(std::int32_t t, std::size_t i) const {
     return points_[at(triangles_[at(t)][i])];
   }
@@ -312,7 +312,7 @@ class CellFinder {
 
   const PlcComplex& complex_;
   ExecutionContext& context_;
-  Point3 center_;
+  Point3 centre_;
   double scale_ = 1;            // a power of two
   std::vector<Point3> points_;  // tilted and scaled
   std::vector<Triangle> triangles_;

@@ -65,10 +65,10 @@ std::int64_t greatest_fold(const std::vector<Point3>& points,
   return result;
 }
 
-std::array<double, 6> second_moments(const std::vector<Point3>& points, Point3 center) {
+std::array<double, 6> second_moments(const std::vector<Point3>& points, Point3 centre) {
   std::array<double, 6> m{};
   for (const Point3 p : points) {
-    const Point3 d = p - center;
+    const Point3 d = p - centre;
     m[0] += d.x * d.x;
     m[1] += d.x * d.y;
     m[2] += d.x * d.z;
@@ -105,10 +105,10 @@ std::vector<FacetMass> facet_masses(const PlcComplex& complex) {
   return result;
 }
 
-std::array<double, 6> facet_moments(const std::vector<FacetMass>& masses, Point3 center) {
+std::array<double, 6> facet_moments(const std::vector<FacetMass>& masses, Point3 centre) {
   std::array<double, 6> m{};
   for (const FacetMass& mass : masses) {
-    const auto one = second_moments({mass.centroid}, center);
+    const auto one = second_moments({mass.centroid}, centre);
     for (std::size_t i = 0; i < 6; ++i) m[i] += mass.area * one[i];
   }
   return m;
@@ -119,7 +119,7 @@ class CandidateSearch {
   CandidateSearch(const PlcComplex& complex, const std::optional<Point3>& origin, double tolerance)
       : complex_(complex),
         points_(complex.points),
-        center_(origin ? *origin : centroid_of(complex.points)),
+        centre_(origin ? *origin : centroid_of(complex.points)),
         tolerance_(tolerance) {}
 
   AxisCandidates along(Point3 direction) {
@@ -128,9 +128,9 @@ class CandidateSearch {
   }
 
   AxisCandidates principal() {
-    const SymmetricEigen by_vertices = symmetric_eigen(second_moments(points_, center_));
+    const SymmetricEigen by_vertices = symmetric_eigen(second_moments(points_, centre_));
     const SymmetricEigen by_facets =
-        symmetric_eigen(facet_moments(facet_masses(complex_), center_));
+        symmetric_eigen(facet_moments(facet_masses(complex_), centre_));
     for (const SymmetricEigen* eigen : {&by_vertices, &by_facets}) {
       for (std::size_t i = 3; i-- > 0;) add(canonical(clean(eigen->vectors[i])), true);
     }
@@ -140,11 +140,11 @@ class CandidateSearch {
 
   std::vector<AxisCandidate> scattered() {
     find_shell();
-    for (const FacetMass& mass : facet_masses(complex_)) add(mass.centroid - center_, false);
-    for (const Point3 p : points_) add(p - center_, false);
+    for (const FacetMass& mass : facet_masses(complex_)) add(mass.centroid - centre_, false);
+    for (const Point3 p : points_) add(p - centre_, false);
     for (const ComplexEdge& e : complex_.edges) {
-      const Point3 a = points_[static_cast<std::size_t>(e.a)] - center_;
-      add(0.5 * (a + points_[static_cast<std::size_t>(e.b)] - center_), false);
+      const Point3 a = points_[static_cast<std::size_t>(e.a)] - centre_;
+      add(0.5 * (a + points_[static_cast<std::size_t>(e.b)] - centre_), false);
     }
     tried_ = 0;  // the shell has a share of its own
     add_from_shell();
@@ -195,7 +195,7 @@ class CandidateSearch {
     for (const AxisCandidate& c : result_) {
       if (length(cross(c.frame.direction(), direction)) <= kSame) return;
     }
-    const AxisFrame frame = AxisFrame::of_axis(center_, direction);
+    const AxisFrame frame = AxisFrame::of_axis(centre_, direction);
     if (!keep && !shell_.empty() && greatest_fold(shell_, frame, 4 * tolerance_) == 1) return;
     // A guessed axis may be off by some tolerances.
     const std::int64_t fold = greatest_fold(points_, frame, 4 * tolerance_);
@@ -205,7 +205,7 @@ class CandidateSearch {
   // The vertices at that distance from the centre which the fewest share.
   void find_shell() {
     std::vector<std::array<double, 2>> keys;
-    for (const Point3 p : points_) keys.push_back({0, distance(p, center_)});
+    for (const Point3 p : points_) keys.push_back({0, distance(p, centre_)});
     std::size_t best = kMaxShell + 1;
     double radius = 0;
     each_group(keys, 2 * tolerance_, [&](std::size_t count, double r, double) {
@@ -217,7 +217,7 @@ class CandidateSearch {
     });
     if (best > kMaxShell) return;
     for (const Point3 p : points_) {
-      const double r = distance(p, center_);
+      const double r = distance(p, centre_);
       // A group begins at its smallest radius; a few tolerances hold all of it.
       if (r >= radius && r <= radius + 8 * tolerance_) shell_.push_back(p);
     }
@@ -227,7 +227,7 @@ class CandidateSearch {
   // passes the middle of u and v.
   void add_from_shell() {
     for (std::size_t v = 1; v < shell_.size(); ++v) {
-      add(0.5 * (shell_[0] - center_ + shell_[v] - center_), false);
+      add(0.5 * (shell_[0] - centre_ + shell_[v] - centre_), false);
       for (std::size_t w = 1; w < shell_.size(); ++w) {
         if (w == v) continue;
         const Point3 first = shell_[v] - shell_[0];
@@ -244,7 +244,7 @@ class CandidateSearch {
 
   const PlcComplex& complex_;
   const std::vector<Point3>& points_;
-  Point3 center_;
+  Point3 centre_;
   double tolerance_;
   std::size_t tried_ = 0;
   std::vector<Point3> shell_;

@@ -66,7 +66,7 @@ TEST(StatisticsJson, NumbersThatAreNoneBecomeNull) {
 TEST(InspectionJson, TellsSymmetryAndSize) {
   PslgInspection inspection;
   inspection.fold = 6;
-  inspection.center = {1, 2};
+  inspection.centre = {1, 2};
   inspection.folds = {{2, 0.0, true}, {6, 1e-9, true}};
   const auto json = inspection_to_json(inspection);
   EXPECT_EQ(json["fold"], 6);

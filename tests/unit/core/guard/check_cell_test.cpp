@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/base/random.hpp"
-#include "core/plane/mesh_pslg.hpp"
+#include "core/mesh_model.hpp"
 #include "core/solid/cut/cut_cell.hpp"
 #include "core/solid/mesh_solid.hpp"
 #include "core/solid/sector/symmetrise.hpp"
@@ -42,7 +42,7 @@ SymmetryCellMesh planar_cell(const Pslg& model, std::int32_t fold, double max_ar
   MeshOptions options;
   options.fold = fold;
   options.max_area = max_area;
-  auto made = plane::mesh_pslg(model, options, context);
+  auto made = mesh_model(model, options, context);
   EXPECT_TRUE(made) << made.error().message;
   return made ? made->mesh : SymmetryCellMesh{};
 }

@@ -77,7 +77,7 @@ TEST(SegmentCover, RefinementChangesNothing) {
     Editor editor(sample.mesh());
     ExecutionContext context;
     context.set_max_elements(20'000);
-    Refiner refiner(editor, criteria, {sample.pslg.center, true, 0, 0}, context);
+    Refiner refiner(editor, criteria, {sample.pslg.centre, true, 0, 0}, context);
     const auto done = refiner.run();
     if (!done) continue;  // some random models ask for more than this
     EXPECT_EQ(fault(wanted, measure_segment_cover(sample.mesh())), "");

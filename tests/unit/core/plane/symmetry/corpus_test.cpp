@@ -76,7 +76,7 @@ TEST(SymmetryCorpus, EveryPlaneModelHasTheFoldOfTheManifest) {
     EXPECT_GE(inspection->min_input_angle_deg,
               entry.at("min_input_angle_deg").get<double>() - 1e-3);
     const Point2 center{entry["axis"]["origin"][0], entry["axis"]["origin"][1]};
-    EXPECT_LE(distance(inspection->center, center),
+    EXPECT_LE(distance(inspection->centre, center),
               (real ? 1e-4 : 1e-12) * inspection->diameter + 1e-15 * length(center));
     EXPECT_LE(inspection->symmetry_error_rel, real ? 2e-4 : 1e-12);
 

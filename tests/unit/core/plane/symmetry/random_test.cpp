@@ -41,7 +41,7 @@ TEST(RandomPslg, FoldAndCentreAreFound) {
       EXPECT_EQ(found->fold, fold);
       EXPECT_LE(found->symmetry_error_rel, 1e-13);
       if (fold > 1) {
-        EXPECT_LE(distance(found->center, traits.center), 1e-12 * found->diameter);
+        EXPECT_LE(distance(found->centre, traits.center), 1e-12 * found->diameter);
       }
       expect_symmetric_invariants(*found, pslg);
       if (HasFatalFailure()) return;
@@ -64,7 +64,7 @@ TEST(RandomPslg, DeclaredFoldCentreAndDivisorsAreTaken) {
         const auto found = symmetrise(pslg, options, context);
         ASSERT_TRUE(found) << found.error().message;
         EXPECT_EQ(found->fold, divisor);
-        EXPECT_EQ(found->center, traits.center);
+        EXPECT_EQ(found->centre, traits.center);
         expect_symmetric_invariants(*found, pslg);
       }
       options.fold = fold + 1;

@@ -126,7 +126,7 @@ TEST(Symmetrise, CopiesKeepTheirMarkersWhenIgnored) {
     for (const PslgSegment& t : pslg.segments) {
       const Point2 other = 0.5 * (pslg.vertices[static_cast<std::size_t>(t.a)] +
                                   pslg.vertices[static_cast<std::size_t>(t.b)]);
-      if (distance(middle + found->center, other) < 1e-9) {
+      if (distance(middle + found->centre, other) < 1e-9) {
         EXPECT_EQ(s.marker, t.marker);
       }
     }
@@ -227,7 +227,7 @@ TEST(Symmetrise, SameInputGivesTheSameResult) {
   const auto second = run(pslg);
   ASSERT_TRUE(first && second);
   EXPECT_EQ(first->orbit_points, second->orbit_points);
-  EXPECT_EQ(first->center, second->center);
+  EXPECT_EQ(first->centre, second->centre);
   EXPECT_EQ(first->holes, second->holes);
 }
 
