@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "tests/unit/core/solid/surface_checks.hpp"
@@ -115,6 +117,27 @@ TEST(DeviationGuard, WhatIsLeftBehindCountsToo) {
   // Where it should be, but turned over.
   std::vector<PlannedTriangle> turned{tent.planned(0, {0, 2, 1}), tent.planned(1, {0, 3, 2})};
   EXPECT_FALSE(DeviationGuard(tent.surface, 0.31).allows(tent.gone, turned));
+}
+
+// A triangle that stands on the top of the cube by its base, so high and so steep.
+TEST(DeviationGuard, TrianglesFaceAsTheSurfaceDid) {
+  Cube cube;
+  DeviationGuard guard(cube.surface, kMost);
+  const auto allowed = [&](double height, double tilt_deg) {
+    const double tilt = tilt_deg * std::numbers::pi / 180;
+    const PlannedTriangle p{0,
+                            {OrbitVertex{0, 0}, {1, 0}, {2, 0}},
+                            {Point3{0.3, 0.5, 1},
+                             {0.7, 0.5, 1},
+                             {0.5, 0.5 + height * std::cos(tilt), 1 + height * std::sin(tilt)}}};
+    return guard.allows({}, {&p, 1});
+  };
+  EXPECT_TRUE(allowed(2.05 * kMost, 44));
+  EXPECT_FALSE(allowed(2.05 * kMost, 46));
+  // Thin ones tell less of the way they face.
+  EXPECT_TRUE(allowed(kMost, 60));
+  EXPECT_TRUE(allowed(kMost, 80));
+  EXPECT_FALSE(allowed(kMost, 90));
 }
 
 // What was followed unasked is still owed: by the triangle nearest to it, under its later number.
