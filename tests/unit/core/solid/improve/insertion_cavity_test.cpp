@@ -18,7 +18,7 @@
 namespace symcell::solid {
 namespace {
 
-constexpr int kMostFound = 40;
+constexpr int kMostFound = 200;
 constexpr double kPoor = 0.5;  // shapes below it are looked at
 
 class InsertionCavityFold : public testing::TestWithParam<std::int32_t> {
@@ -45,6 +45,18 @@ class InsertionCavityFold : public testing::TestWithParam<std::int32_t> {
   }
 
   QuotientTetrahedralization& mesh() { return solid_.mesh; }
+
+  // Takes every second subfacet out of the facet within.
+  void tear_plate() {
+    for (TetId t = 0; t < mesh().tet_slots(); ++t) {
+      if (!mesh().alive(t)) continue;
+      for (std::uint32_t i = 0; i < 4; ++i) {
+        const HalfFace behind = mesh().tet(t).nb[i];
+        if (behind == kNoHalfFace || (t + tet_of(behind)) % 2 != 0) continue;
+        mesh().tet(t).facet[i] = kNoFacet;
+      }
+    }
+  }
 
   static double shape(const Editor& editor, TetId t) {
     const auto x = editor.points({t, 0});
@@ -123,11 +135,12 @@ TEST_P(InsertionCavityFold, TheStarTakesTheCavitysPlace) {
   EXPECT_GT(found, 3);
 }
 
-// No subfacet lies within: those of the cavity's tetrahedra are all on its boundary.
+// No subfacet lies within: those of the cavity's tetrahedra are all on its boundary. A plate with
+// gaps could be reached round from its other side.
 TEST_P(InsertionCavityFold, SwallowsNoSubfacetsAndSegments) {
   const Criteria criteria(solid_, options_);
   int subfacets = 0;
-  const int found = each_found(criteria, [&](const Cavity& cavity, TetId, const Editor&) {
+  const auto look = [&](const Cavity& cavity, TetId, const Editor&) {
     std::size_t inside = 0, outside = 0;
     for (const TetCopy& c : cavity.tets) {
       for (std::uint32_t i = 0; i < 4; ++i) {
@@ -145,8 +158,10 @@ TEST_P(InsertionCavityFold, SwallowsNoSubfacetsAndSegments) {
     for (const CavityFace& f : cavity.faces) outside += f.facet != kNoFacet ? 1 : 0;
     EXPECT_EQ(inside, outside);
     subfacets += static_cast<int>(outside);
-  });
-  EXPECT_GT(found, 3);
+  };
+  EXPECT_GT(each_found(criteria, look), 3);
+  tear_plate();
+  EXPECT_GT(each_found(criteria, look), 3);
   EXPECT_GT(subfacets, 0);
 }
 
@@ -162,11 +177,10 @@ TEST_P(InsertionCavityFold, NothingIsDoneAndTheBestIsFound) {
     if (!insertion.search(t, shape(editor, t))) continue;
     ++found;
     const double reached = worst_of_star(insertion.best());
-    // Asked for more than the best there is nothing, for a little less there is.
+    // Asked for more than the best there is nothing; asked for less there is the same.
     EXPECT_FALSE(insertion.search(t, reached));
-    EXPECT_TRUE(insertion.search(t, 0.5 * (shape(editor, t) + 0.9 * reached)) ||
-                0.9 * reached < shape(editor, t));
-    EXPECT_GE(worst_of_star(insertion.best()), 0.9 * reached);
+    EXPECT_TRUE(insertion.search(t, 0.9 * shape(editor, t)));
+    EXPECT_EQ(worst_of_star(insertion.best()), reached);
   }
   EXPECT_GT(found, 3);
   EXPECT_EQ(test::fingerprint(mesh()), before);
