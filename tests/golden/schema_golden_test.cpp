@@ -61,7 +61,7 @@ TEST(Golden, StatisticsOfEachKind) {
 TEST(Golden, InspectionOfEachKind) {
   PslgInspection planar;
   planar.fold = 4;
-  planar.center = {0.5, 0.5};
+  planar.centre = {0.5, 0.5};
   planar.area = 1;
   planar.diameter = 1.5;
   planar.bbox_max = {1, 1};

@@ -197,7 +197,7 @@ TEST(Symmetrise, DeclaredCentreMustFit) {
   options.center = Point2{3, 4};
   const auto right = run(pslg, options);
   ASSERT_TRUE(right) << right.error().message;
-  EXPECT_FALSE(right->center_detected);
+  EXPECT_FALSE(right->centre_detected);
   EXPECT_FALSE(right->fold_detected);
   options.fold.reset();
   options.center = Point2{3.5, 4};

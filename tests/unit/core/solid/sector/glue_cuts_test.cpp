@@ -44,7 +44,7 @@ WedgePatch wedge_of(const PrismShape& shape, std::uint64_t seed, double start) {
 // Every vertex of the higher cut, the axis apart, goes away from the axis.
 void push_out(WedgePatch& patch, double by) {
   for (std::size_t v = 0; v < patch.points.size(); ++v) {
-    if (patch.on_upper[v] == 0 || patch.on_lower[v] != 0) continue;
+    if (patch.on_higher[v] == 0 || patch.on_lower[v] != 0) continue;
     Point3& p = patch.points[v];
     const double r = std::hypot(p.x, p.y);
     p = {(1 + by / r) * p.x, (1 + by / r) * p.y, p.z};
@@ -75,18 +75,18 @@ TEST_P(GluedPrisms, AreClosedAndKeepBothCurves) {
       // All vertices of both cuts, and no others; the triangles differ from side to side, so that
       // either cut has some of its own.
       const std::vector<Point3> common = cut_points(s);
-      std::size_t lower = 0, upper = 0;
+      std::size_t lower = 0, higher = 0;
       std::vector<Point3> all;
       for (std::size_t v = 0; v < patch.points.size(); ++v) {
-        if (patch.on_lower[v] == 0 && patch.on_upper[v] == 0) continue;
+        if (patch.on_lower[v] == 0 && patch.on_higher[v] == 0) continue;
         lower += patch.on_lower[v];
-        upper += patch.on_upper[v];
+        higher += patch.on_higher[v];
         all.push_back(patch.points[v]);
         EXPECT_TRUE(any_near(common, flat(patch.points[v]), kMerge));
       }
       for (const Point3& p : common) EXPECT_TRUE(any_near(all, flat(p), kMerge));
-      EXPECT_GE(common.size(), std::max(lower, upper));
-      EXPECT_LE(common.size(), lower + upper);
+      EXPECT_GE(common.size(), std::max(lower, higher));
+      EXPECT_LE(common.size(), lower + higher);
     }
   }
 }

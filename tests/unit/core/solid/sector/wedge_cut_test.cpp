@@ -40,7 +40,7 @@ double wedge_area(const WedgePatch& patch) {
 // snapped have turned by up to `turned`.
 void expect_sound_wedge(const WedgePatch& patch, double extent, double turned = 1e-12) {
   ASSERT_EQ(patch.on_lower.size(), patch.points.size());
-  ASSERT_EQ(patch.on_upper.size(), patch.points.size());
+  ASSERT_EQ(patch.on_higher.size(), patch.points.size());
   ASSERT_EQ(patch.normals.size(), patch.triangles.size());
   const double width = sector_angle(patch.fold);
   for (std::size_t i = 0; i < patch.points.size(); ++i) {
@@ -54,7 +54,7 @@ void expect_sound_wedge(const WedgePatch& patch, double extent, double turned = 
     while (angle < -rounding) angle += 2 * std::numbers::pi;
     if (patch.on_lower[i] != 0) {
       EXPECT_NEAR(angle, 0, rounding);
-    } else if (patch.on_upper[i] != 0) {
+    } else if (patch.on_higher[i] != 0) {
       EXPECT_NEAR(angle, width, rounding);
     } else {
       EXPECT_GT(angle, 0);
@@ -65,7 +65,7 @@ void expect_sound_wedge(const WedgePatch& patch, double extent, double turned = 
   for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
     const std::int32_t a = uses[begin].low, b = uses[begin].high;
     const bool at_lower = patch.on_lower[a] != 0 && patch.on_lower[b] != 0;
-    const bool at_upper = patch.on_upper[a] != 0 && patch.on_upper[b] != 0;
+    const bool at_upper = patch.on_higher[a] != 0 && patch.on_higher[b] != 0;
     // Open where it was cut and nowhere else.
     EXPECT_EQ(end - begin, at_lower || at_upper ? 1U : 2U);
     if (end - begin == 2) {
@@ -133,9 +133,9 @@ TEST(WedgeCut, AllWedgesTogetherAreTheWholeBody) {
 TEST(WedgeCut, SnapsVerticesNearAHalfPlane) {
   constexpr double kSnap = 1e-3, kStart = 0.6;
   for (const bool near : {true, false}) {
-    for (const bool upper : {true, false}) {
+    for (const bool higher : {true, false}) {
       TriangleSurface body = test::sphere(2);
-      const double plane = kStart + (upper ? sector_angle(4) : 0);
+      const double plane = kStart + (higher ? sector_angle(4) : 0);
       const Point3 out{std::cos(plane), std::sin(plane), 0};
       const Point3 along{-out.y, out.x, 0};
       IndexedSurface whole = weld_exactly(body);
@@ -146,7 +146,7 @@ TEST(WedgeCut, SnapsVerticesNearAHalfPlane) {
       *nearest = placed;
       const auto patch = cut_wedge(whole, 4, kStart, kSnap);
       ASSERT_TRUE(patch);
-      const auto& flags = upper ? patch->on_upper : patch->on_lower;
+      const auto& flags = higher ? patch->on_higher : patch->on_lower;
       bool snapped = false;
       for (std::size_t v = 0; v < flags.size(); ++v) {
         snapped = snapped || (flags[v] != 0 && distance(patch->points[v], out) < 1e-12);
