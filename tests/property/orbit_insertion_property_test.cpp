@@ -103,7 +103,7 @@ TEST(OrbitInsertion, ModelsOfTheTests) {
   }
 }
 
-TEST(OrbitInsertion, ModelsOfTheCorpus) {
+TEST(SharedData, TheoremOneOnTheCorpus) {
   const auto shared = test::shared_folder();
   if (!shared) GTEST_SKIP() << "../shared is absent";
   for (const auto& entry : std::filesystem::directory_iterator(*shared / "corpus" / "2d")) {

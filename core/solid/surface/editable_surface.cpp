@@ -197,13 +197,21 @@ std::optional<CollapsePlan> EditableSurface::plan_collapse(std::int32_t t,
   std::sort(theirs.begin(), theirs.end());
   theirs.erase(std::unique(theirs.begin(), theirs.end()), theirs.end());
   std::size_t common = 0, copies = 0;
+  std::vector<std::int32_t> others;
   for (Neighbour n : mine) {
     if (n.orbit == from.orbit) return std::nullopt;
     copies += n.orbit == to.orbit ? 1 : 0;
     if (to_axis) n.exponent = 0;
-    common += std::binary_search(theirs.begin(), theirs.end(), n) ? 1 : 0;
+    const bool is_common = std::binary_search(theirs.begin(), theirs.end(), n);
+    common += is_common ? 1 : 0;
+    if (to_axis && !is_common) others.push_back(n.orbit);
   }
   if (common != 2 || copies != 1) return std::nullopt;
+  // Two copies of a neighbour would be one, with the triangles of both.
+  std::sort(others.begin(), others.end());
+  if (std::adjacent_find(others.begin(), others.end()) != others.end()) return std::nullopt;
+  // Of a tetrahedron one triangle and its back would be left.
+  if (mine.size() == 3 && theirs.size() == 3) return std::nullopt;
   for (const std::int32_t o : stars_[from.orbit]) {
     if (o == t || o == other.triangle) continue;
     PlannedTriangle planned{o, s_->triangles[o], {}};

@@ -18,7 +18,8 @@
 
 namespace symcell::solid {
 
-// `most`: largest distance between the old and the new surface, both ways.
+// `most`: largest distance between the old and the new surface, both ways; where narrow corners at
+// the cut are opened, twice that.
 // Requires: planar patches were found. Narrow ones that stand for a curved part are given up.
 // Errors: kInternal (not closed), limits.  Cost: O(n log n).
 [[nodiscard]] Result<void> improve_surface(QuotientSurface& surface,

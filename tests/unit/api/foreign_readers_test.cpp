@@ -32,9 +32,9 @@ Outcome run(const std::string& command, const test::TemporaryFolder& folder) {
   return {status, test::read_file(log)};
 }
 
-TEST(ForeignReaders, IndependentCheckerPassesVtuFiles) {
+TEST(SharedData, IndependentCheckerPassesVtuFiles) {
   const auto shared = test::shared_folder();
-  if (!shared) GTEST_SKIP() << "the independent checker is not beside the source tree";
+  if (!shared) GTEST_SKIP() << "../shared is absent";
   const test::TemporaryFolder folder;
   for (const test::Sample& sample : test::all_samples()) {
     test::write_file(folder / "model.json", write_pslg_json(sample.model));
@@ -72,9 +72,9 @@ std::string plc_json(const Plc& model) {
   return json.dump();
 }
 
-TEST(ForeignReaders, IndependentCheckerPassesSolids) {
+TEST(SharedData, IndependentCheckerPassesSolids) {
   const auto shared = test::shared_folder();
-  if (!shared) GTEST_SKIP() << "the independent checker is not beside the source tree";
+  if (!shared) GTEST_SKIP() << "../shared is absent";
   const test::TemporaryFolder folder;
   for (const test::SolidSample& sample : test::solid_samples()) {
     test::write_file(folder / "model.json", plc_json(sample.model));

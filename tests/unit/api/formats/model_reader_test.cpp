@@ -120,9 +120,9 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair{"b26_html_page.stl", ErrorCode::kUnknownFormat},
                     std::pair{"b30_nan_binary.stl", ErrorCode::kNonFinite}));
 
-TEST(ModelReader, CorpusBesideTheTree) {
+TEST(SharedData, PlanarCorpusIsRead) {
   const auto shared = test::shared_folder();
-  if (!shared) GTEST_SKIP() << "the corpus is not beside the source tree";
+  if (!shared) GTEST_SKIP() << "../shared is absent";
   const auto manifest =
       nlohmann::json::parse(test::read_file(*shared / "corpus" / "manifest.json"));
   std::size_t read = 0;
@@ -147,9 +147,9 @@ TEST(ModelReader, CorpusBesideTheTree) {
   EXPECT_GE(read, 10U);
 }
 
-TEST(ModelReader, SolidCorpusBesideTheTree) {
+TEST(SharedData, SolidCorpusIsRead) {
   const auto shared = test::shared_folder();
-  if (!shared) GTEST_SKIP() << "the corpus is not beside the source tree";
+  if (!shared) GTEST_SKIP() << "../shared is absent";
   const auto manifest =
       nlohmann::json::parse(test::read_file(*shared / "corpus" / "manifest.json"));
   std::size_t read = 0;

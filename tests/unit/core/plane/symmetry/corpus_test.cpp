@@ -41,9 +41,9 @@ Pslg read_pslg(const Json& json) {
   return pslg;
 }
 
-TEST(SymmetryCorpus, EveryPlaneModelHasTheFoldOfTheManifest) {
+TEST(SharedData, EveryPlaneModelHasTheFoldOfTheManifest) {
   if (!std::filesystem::exists(corpus() / "manifest.json")) {
-    GTEST_SKIP() << "no corpus at " << corpus();
+    GTEST_SKIP() << "../shared is absent";
   }
   const Json manifest = read_json(corpus() / "manifest.json");
   int models = 0;
@@ -95,9 +95,9 @@ TEST(SymmetryCorpus, EveryPlaneModelHasTheFoldOfTheManifest) {
   EXPECT_GE(models, 16);
 }
 
-TEST(SymmetryCorpus, RegionAttributesThatSwapForbidTheFold) {
+TEST(SharedData, RegionAttributesThatSwapForbidTheFold) {
   const auto path = corpus() / "2d" / "p2_08_yinyang_n2_segment_through_centre.json";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no corpus at " << corpus();
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "../shared is absent";
   const Pslg pslg = read_pslg(read_json(path));
   ExecutionContext context;
   MeshOptions options;
@@ -117,8 +117,8 @@ struct BadCase {
   ErrorCode code;
 };
 
-TEST(SymmetryCorpus, BadPlaneModelsAreRefusedWithTheRightCode) {
-  if (!std::filesystem::exists(corpus() / "bad")) GTEST_SKIP() << "no corpus at " << corpus();
+TEST(SharedData, BadPlaneModelsAreRefusedWithTheRightCode) {
+  if (!std::filesystem::exists(corpus() / "bad")) GTEST_SKIP() << "../shared is absent";
   constexpr BadCase kCases[] = {
       {"b03_bowties_self_intersecting", ErrorCode::kSelfIntersection},
       {"b06_index_out_of_range", ErrorCode::kIndexOutOfRange},
@@ -139,8 +139,8 @@ TEST(SymmetryCorpus, BadPlaneModelsAreRefusedWithTheRightCode) {
   }
 }
 
-TEST(SymmetryCorpus, DeclaredFoldsThatDoNotHoldAreRefused) {
-  if (!std::filesystem::exists(corpus() / "bad")) GTEST_SKIP() << "no corpus at " << corpus();
+TEST(SharedData, DeclaredFoldsThatDoNotHoldAreRefused) {
+  if (!std::filesystem::exists(corpus() / "bad")) GTEST_SKIP() << "../shared is absent";
   const std::pair<const char*, int> cases[] = {{"b01_star5_declared_6.json", 6},
                                                {"b02_one_vertex_moved.json", 8}};
   for (const auto& [file, fold] : cases) {

@@ -53,9 +53,9 @@ void expect_sectors(const SectorSource& source, const Json& entry) {
   }
 }
 
-TEST(PlcCorpus, FoldsAxesAndSectors) {
+TEST(SharedData, FoldsAxesAndSectors) {
   const auto shared = test::shared_folder();
-  if (!shared) GTEST_SKIP() << "no corpus";
+  if (!shared) GTEST_SKIP() << "../shared is absent";
   std::ifstream file(*shared / "corpus" / "manifest.json");
   const Json manifest = Json::parse(file);
   int models = 0;
