@@ -65,6 +65,12 @@ enum class ErrorCode : std::uint16_t {
 
 [[nodiscard]] std::string_view error_code_name(ErrorCode code);
 
+// Whether trying in another way would only run into the same limit.
+[[nodiscard]] constexpr bool is_limit(ErrorCode code) {
+  return code == ErrorCode::kCancelled || code == ErrorCode::kTimeLimit ||
+         code == ErrorCode::kMemoryLimit || code == ErrorCode::kElementLimit;
+}
+
 struct Error {
   ErrorCode code = ErrorCode::kInternal;
   std::string message;                 // one line: what, where, how to mend

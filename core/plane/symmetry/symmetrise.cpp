@@ -121,14 +121,34 @@ class Symmetriser {
     return fail(std::move(error));
   }
 
-  // Links copies as tightly as succeeds: a wide link would merge vertices that only lie close.
+  // Links copies as tightly as succeeds: a wide link would merge vertices that only lie close. But
+  // where a tight one gives vertices copies that the model lacks, some of those may stand beside
+  // others that were meant, by less than the tolerance: then the widest that needs the fewest.
   Result<SymmetricPslg> close(std::int32_t fold, Point2 centre) {
     const double finest = std::min(prepared_.resolution(), 2 * tolerance_);
+    std::optional<SymmetricPslg> best;
     for (double link = finest;; link = std::min(1000 * link, 2 * tolerance_)) {
       auto result = close_linked({fold, centre, link, std::max(tolerance_, finest)});
-      if (result || result.error().code != ErrorCode::kNotSymmetric) return result;
-      if (fold == 1 || link >= 2 * tolerance_) return result;
+      if (result) {
+        if (!best || result->orbit_points.size() < best->orbit_points.size()) {
+          best = std::move(*result);
+        }
+      } else if (is_limit(result.error().code) ||
+                 (!best && result.error().code != ErrorCode::kNotSymmetric)) {
+        return result;
+      }
+      if (best && (fold == 1 || !adds_vertices(*best))) return std::move(*best);
+      if (fold == 1 || link >= 2 * tolerance_) {
+        return best ? Result<SymmetricPslg>(std::move(*best)) : result;
+      }
     }
+  }
+
+  [[nodiscard]] bool adds_vertices(const SymmetricPslg& pslg) const {
+    const std::size_t centre = pslg.centre_orbit >= 0 ? 1 : 0;
+    const std::size_t all =
+        (pslg.orbit_points.size() - centre) * static_cast<std::size_t>(pslg.fold) + centre;
+    return all > prepared_.points.size() + 1;  // a centre may be new, cut into a segment
   }
 
   Result<SymmetricPslg> close_linked(ClosureRequest request) {

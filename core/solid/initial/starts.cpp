@@ -7,11 +7,6 @@
 namespace symcell::solid {
 namespace {
 
-bool is_limit(ErrorCode code) {
-  return code == ErrorCode::kCancelled || code == ErrorCode::kTimeLimit ||
-         code == ErrorCode::kMemoryLimit || code == ErrorCode::kElementLimit;
-}
-
 // What a wrong seed or a wrong model causes is so for every sector.
 bool is_worth_another_sector(ErrorCode code) {
   return code == ErrorCode::kTetrahedralizationFailed || code == ErrorCode::kInternal;

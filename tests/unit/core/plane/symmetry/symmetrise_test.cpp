@@ -86,6 +86,22 @@ TEST(Symmetrise, NoiseIsAveragedAndReported) {
   EXPECT_EQ(beyond->fold, 1);
 }
 
+// The shape has the copies of a vertex that is a little off; the vertices have them a little beside.
+TEST(Symmetrise, OneVertexOffWithinTheToleranceGetsNoCopiesBesideOthers) {
+  for (const double off : {1e-9, 4e-8, 1e-6, 5e-6}) {
+    for (const Point2 way : {Point2{1, 0}, Point2{0, 1}, Point2{-0.6, 0.8}}) {
+      SCOPED_TRACE(off);
+      Pslg pslg = regular_ring(12, 10, 4);
+      pslg.vertices[11] = pslg.vertices[11] + off * way;
+      const auto found = run(pslg);
+      ASSERT_TRUE(found) << found.error().message;
+      EXPECT_EQ(found->fold, 12);
+      EXPECT_EQ(found->orbit_points.size() * 12, pslg.vertices.size());
+      EXPECT_LE(found->symmetry_error_rel, 1e-6);
+    }
+  }
+}
+
 TEST(Symmetrise, CoordinatesRoundedToSixDigitsPass) {
   Pslg pslg = gear(24, 2, 1.6, 0.4);
   for (Point2& p : pslg.vertices) p = {std::round(p.x * 1e6) / 1e6, std::round(p.y * 1e6) / 1e6};
