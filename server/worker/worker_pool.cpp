@@ -99,9 +99,17 @@ void WorkerPool::start_one(std::unique_lock<std::mutex>& lock) {
   fault_ = fault;
   if (worker) {
     ++started_;
-    idle_.push_back(std::move(worker));
   } else {
     ++failed_starts_;
+  }
+  if (worker && may_start()) {
+    idle_.push_back(std::move(worker));
+  } else if (worker) {
+    // Meanwhile another was given back to the one that waited. The end waits for the kernel.
+    ++retired_;
+    lock.unlock();
+    worker.reset();
+    lock.lock();
   }
   available_.notify_all();
 }
