@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/geometry/limits.hpp"
+#include "core/geometry/point_tree.hpp"
+#include "core/geometry/rotation.hpp"
 #include "core/geometry/segment_index.hpp"
 #include "core/model/describe.hpp"
 #include "core/plane/symmetry/fold_detection.hpp"
@@ -139,7 +142,12 @@ class Symmetriser {
       }
       if (best && (fold == 1 || !adds_vertices(*best))) return std::move(*best);
       if (fold == 1 || link >= 2 * tolerance_) {
-        return best ? Result<SymmetricPslg>(std::move(*best)) : result;
+        if (!best) return result;
+        if (options_.symmetry_tolerance_rel.has_value() || !has_copies_beside_vertices(*best)) {
+          return std::move(*best);
+        }
+        return fail(ErrorCode::kNotSymmetric,
+                    "vertices have copies that stand beside others by about the tolerance");
       }
     }
   }
@@ -149,6 +157,32 @@ class Symmetriser {
     const std::size_t all =
         (pslg.orbit_points.size() - centre) * static_cast<std::size_t>(pslg.fold) + centre;
     return all > prepared_.points.size() + 1;  // a centre may be new, cut into a segment
+  }
+
+  // Whether positions that differ by about the tolerance, which is no more than noise unless it was
+  // given, would be several vertices of the result and are one of the model: no mesh of such spots
+  // can be told from a wrong one.
+  [[nodiscard]] bool has_copies_beside_vertices(const SymmetricPslg& pslg) const {
+    const RotationTable rotations(pslg.fold);
+    std::vector<Point3> lifted, given;
+    for (std::size_t v = 0; v < pslg.orbit_points.size(); ++v) {
+      const bool centre = static_cast<std::int32_t>(v) == pslg.centre_orbit;
+      for (std::int32_t k = 0; k < (centre ? 1 : pslg.fold); ++k) {
+        const Point2 p = rotations.rotate(pslg.orbit_points[v], k);
+        lifted.push_back({p.x, p.y, 0});
+      }
+    }
+    for (const Point2 p : prepared_.points) {
+      given.push_back({p.x - pslg.centre.x, p.y - pslg.centre.y, 0});
+    }
+    const PointTree all(lifted), model(given);
+    const Point3 reach{2 * tolerance_, 2 * tolerance_, 0};
+    return std::any_of(given.begin(), given.end(), [&](const Point3& p) {
+      std::int64_t more = 0;
+      all.within_box(p - reach, p + reach, [&](std::int32_t) { ++more; });
+      model.within_box(p - reach, p + reach, [&](std::int32_t) { --more; });
+      return more > 0;
+    });
   }
 
   Result<SymmetricPslg> close_linked(ClosureRequest request) {

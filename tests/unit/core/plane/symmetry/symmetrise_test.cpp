@@ -102,6 +102,18 @@ TEST(Symmetrise, OneVertexOffWithinTheToleranceGetsNoCopiesBesideOthers) {
   }
 }
 
+TEST(Symmetrise, OneVertexOffByMoreThanTheToleranceForbidsTheFold) {
+  Pslg pslg = regular_ring(12, 10, 4);
+  pslg.vertices[11] = pslg.vertices[11] + Point2{0, 3.4e-5};  // 1.2e-6 of the diameter
+  const auto found = run(pslg);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->orbit_points.size() * static_cast<std::size_t>(found->fold),
+            pslg.vertices.size());
+  MeshOptions wider;
+  wider.symmetry_tolerance_rel = 1e-5;
+  EXPECT_EQ(run(pslg, wider)->fold, 12);
+}
+
 TEST(Symmetrise, CoordinatesRoundedToSixDigitsPass) {
   Pslg pslg = gear(24, 2, 1.6, 0.4);
   for (Point2& p : pslg.vertices) p = {std::round(p.x * 1e6) / 1e6, std::round(p.y * 1e6) / 1e6};
