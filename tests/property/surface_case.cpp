@@ -17,6 +17,7 @@ namespace {
 
 // Of the tetrahedra, over the ratio with no excuse: coarse surfaces of long triangles that a narrow
 // tolerance does not let be changed have corners that no good tetrahedron fits into.
+constexpr double kMeasureTolerance = 1e-9;  // relative
 constexpr double kMostBadShare = 0.03;
 // An error of this share of the tolerance fills it.
 constexpr double kFilling = 2;
@@ -76,9 +77,9 @@ std::vector<std::string> broken_surface_laws(const SurfaceCase& c, const MeshedS
     broken.push_back(std::move(law));
   }
   const double volume = outcome.statistics.cell.measure * outcome.mesh.fold;
-  // Planes of the shape stay planes but for those too narrow for good tetrahedra, which may go on
-  // into their neighbours within the tolerance.
-  const double moved = *c.options.symmetry_tolerance_rel * topology.diameter * c.model.area;
+  const double moved = c.model.flat
+                           ? kMeasureTolerance * c.model.volume
+                           : *c.options.symmetry_tolerance_rel * topology.diameter * c.model.area;
   if (std::abs(volume - c.model.volume) > moved) {
     broken.push_back("volume: " + std::to_string(volume / c.model.volume) + " of the model's");
   }

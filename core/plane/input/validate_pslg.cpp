@@ -5,7 +5,9 @@
 #include <string>
 
 #include "core/geometry/limits.hpp"
+#include "core/geometry/point_grid.hpp"
 #include "core/geometry/predicates.hpp"
+#include "core/geometry/resolution.hpp"
 #include "core/model/describe.hpp"
 #include "core/plane/input/subdomains.hpp"
 
@@ -131,6 +133,30 @@ Result<void> check_not_collinear(const Pslg& pslg) {
 }
 
 // Equal coordinates come before collinearity in the report, so they are looked for on their own.
+// Vertices that differ by less than coordinates of this size can tell are one: as two they would be
+// features that no check of a mesh can tell from faults.
+Result<void> check_near_duplicates(const Pslg& pslg) {
+  const double resolution = resolution_of(pslg.vertices);
+  if (!(resolution > 0)) return {};
+  PointGrid grid(resolution, pslg.vertices.size());
+  for (std::size_t i = 0; i < pslg.vertices.size(); ++i) {
+    const Point2 p = pslg.vertices[i];
+    const std::int32_t near = grid.nearest(p);
+    const auto id = static_cast<std::int32_t>(i);
+    if (near >= 0) {
+      return fail(ErrorCode::kDuplicateVertices,
+                  "vertices " + std::to_string(near) + " and " + std::to_string(id) + " at " +
+                      describe_point(p) + " are only " +
+                      describe_rounded(distance(p, pslg.vertices[at(near)])) +
+                      " apart, which is rounding in a model of this size; keep one and let the "
+                      "segments refer to it",
+                  {near, id}, pointer_to("vertices", i));
+    }
+    grid.insert(p, id);
+  }
+  return {};
+}
+
 Result<void> check_duplicates(const Pslg& pslg) {
   std::vector<std::int32_t> order(pslg.vertices.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::int32_t>(i);
@@ -150,7 +176,7 @@ Result<void> check_duplicates(const Pslg& pslg) {
                     "; keep one and let the segments refer to it",
                 {u, v}, pointer_to("vertices", at(v)));
   }
-  return {};
+  return check_near_duplicates(pslg);
 }
 
 struct Seed {

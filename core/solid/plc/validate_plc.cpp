@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "core/geometry/limits.hpp"
+#include "core/geometry/point_tree.hpp"
+#include "core/geometry/resolution.hpp"
 #include "core/model/describe.hpp"
 #include "core/solid/plc/conform_plc.hpp"
 #include "core/solid/plc/plc_intersections.hpp"
@@ -143,6 +145,35 @@ Result<void> check_duplicates(const Plc& plc) {
   return {};
 }
 
+// Vertices that differ by less than coordinates of this size can tell are one: as two they would be
+// features that no check of a mesh can tell from faults.
+Result<void> check_near_duplicates(const Plc& plc, double diameter) {
+  double magnitude = 0;
+  for (const Point3 p : plc.vertices) {
+    magnitude = std::max({magnitude, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  }
+  const double resolution = resolution_of(diameter, magnitude);
+  const Point3 reach{resolution, resolution, resolution};
+  const PointTree tree(plc.vertices);
+  for (std::size_t i = 0; i < plc.vertices.size(); ++i) {
+    const Point3 p = plc.vertices[i];
+    const auto id = static_cast<std::int32_t>(i);
+    std::int32_t near = -1;
+    tree.within_box(p - reach, p + reach, [&](std::int32_t j) {
+      if (j < id && distance(p, plc.vertices[at(j)]) <= resolution) near = std::max(near, j);
+    });
+    if (near < 0) continue;
+    return fail(ErrorCode::kDuplicateVertices,
+                "vertices " + std::to_string(near) + " and " + std::to_string(id) + " at " +
+                    describe_point(p) + " are only " +
+                    describe_rounded(distance(p, plc.vertices[at(near)])) +
+                    " apart, which is rounding in a model of this size; keep one and let the "
+                    "facets refer to it",
+                {near, id}, pointer_to("vertices", i));
+  }
+  return {};
+}
+
 Result<double> check_extent(const Plc& plc) {
   if (plc.vertices.size() < 4 || plc.facets.empty()) {
     return fail(ErrorCode::kDegenerateGeometry,
@@ -238,6 +269,7 @@ Result<ValidPlc> validate_plc(const Plc& plc, ExecutionContext& context) {
   if (!diameter) return error_of(diameter);
   SYMCELL_TRY(context.check());
   SYMCELL_TRY(check_duplicates(plc));
+  SYMCELL_TRY(check_near_duplicates(plc, *diameter));
   for (std::size_t f = 0; f < plc.facets.size(); ++f) {
     SYMCELL_TRY(check_planar(plc, f, *diameter));
   }

@@ -54,6 +54,8 @@ TEST(ValidatePslg, RefusesBadNumbersAndIndices) {
   pslg = square();
   pslg.vertices.push_back({4, 0});
   expect_error(pslg, ErrorCode::kDuplicateVertices, {1, 4}, "/vertices/4");
+  pslg.vertices[4] = {4 + 1e-14, -1e-14};
+  expect_error(pslg, ErrorCode::kDuplicateVertices, {1, 4}, "/vertices/4");
 }
 
 TEST(ValidatePslg, RefusesModelsWithoutArea) {

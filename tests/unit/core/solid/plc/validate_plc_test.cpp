@@ -78,6 +78,8 @@ TEST(ValidatePlc, NumbersAndIndices) {
   plc = box({0, 0, 0}, {1, 1, 1});
   plc.vertices.push_back(plc.vertices[2]);
   expect_refused(plc, ErrorCode::kDuplicateVertices, {"vertices 2 and 8"}, "/vertices/8");
+  plc.vertices[8] = plc.vertices[2] + Point3{1e-14, 0, -1e-14};
+  expect_refused(plc, ErrorCode::kDuplicateVertices, {"vertices 2 and 8"}, "/vertices/8");
 
   EXPECT_EQ(validate(Plc{}).error().code, ErrorCode::kDegenerateGeometry);
 }
