@@ -4,10 +4,12 @@
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/base/stopwatch.hpp"
 #include "core/cell/measure_cell.hpp"
 #include "core/cell/quadratic.hpp"
+#include "core/geometry/rotation.hpp"
 #include "core/guard/check_cell.hpp"
 #include "core/solid/cut/cut_cell.hpp"
 #include "core/solid/initial/starts.hpp"
@@ -52,6 +54,35 @@ bool should_try_another_start(const RefinedSolid& mesh,
            effort <= limits.mend_budget;
   }
   return !sized && mesh.count() <= limits.small_cell && effort <= limits.start_budget;
+}
+
+// Nodes and middles of the boundary's facets, in the local frame.
+std::vector<Point3> boundary_points(const SymmetryCellMesh& cell) {
+  const RotationTable rotations(cell.fold);
+  std::vector<Point3> points;
+  std::vector<char> seen(cell.orbit_points.size(), 0);
+  for (std::size_t i = 0; i + 2 < cell.boundary.size(); i += 3) {
+    Point3 sum;
+    for (std::size_t j = i; j < i + 3; ++j) {
+      const OrbitVertex v = cell.nodes[static_cast<std::size_t>(cell.boundary[j])];
+      const Point3& p = cell.orbit_points[static_cast<std::size_t>(v.orbit)];
+      sum = sum + rotations.rotate(p, v.exponent);
+      char& known = seen[static_cast<std::size_t>(v.orbit)];
+      if (known == 0) points.push_back(p);
+      known = 1;
+    }
+    points.push_back((1.0 / 3) * sum);
+  }
+  return points;
+}
+
+// Of a finished cell: in itself, and against what it was made from.
+Result<void> check_finished(const SymmetryCellMesh& cell,
+                            const RefinedSolid& refined,
+                            const SectorSource& source,
+                            ExecutionContext& context) {
+  SYMCELL_TRY(check_cell(cell, &refined.solid.cover.boundary));
+  return source.check_boundary(boundary_points(cell), context);
 }
 
 Result<RefinedSolid> refine_from_starts(Starts& starts,
@@ -110,7 +141,7 @@ Result<MeshOutcome> mesh_solid(const SectorSource& source,
     if (cut) {
       outcome.mesh = build_cell_mesh(refined->solid, *cut, source.symmetry());
       stats.timings_ms.cell += watch.lap();
-      const auto sound = check_cell(outcome.mesh, &refined->solid.cover.boundary);
+      const auto sound = check_finished(outcome.mesh, *refined, source, context);
       stats.timings_ms.check += watch.lap() + refined->check_ms;
       if (sound) {
         stats.refinement = refined->refinement;

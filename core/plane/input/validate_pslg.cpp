@@ -200,12 +200,23 @@ Seed seed_of(const Pslg& pslg, std::size_t query) {
 }
 
 Result<void> check_seed_places(const Pslg& pslg, const PlanarMap& map) {
+  const double resolution = resolution_of(pslg.vertices);
+  PointGrid vertices(resolution, pslg.vertices.size());
+  for (std::size_t v = 0; v < pslg.vertices.size(); ++v) {
+    vertices.insert(pslg.vertices[v], static_cast<std::int32_t>(v));
+  }
   for (std::size_t q = 0; q < map.query_face.size(); ++q) {
     const Seed seed = seed_of(pslg, q);
     if (map.query_piece[q] >= 0) {
       const std::int32_t s = map.pieces[at(map.query_piece[q])].segment;
       return fail(ErrorCode::kUnreachableSeed,
                   seed.name() + " lies on " + describe_segment(pslg.vertices, pslg.segments, s) +
+                      "; move it into the face it is meant for",
+                  {static_cast<std::int64_t>(seed.index)}, seed.pointer());
+    }
+    if (const std::int32_t v = vertices.nearest(seed.point); v >= 0) {
+      return fail(ErrorCode::kUnreachableSeed,
+                  seed.name() + " lies on vertex " + std::to_string(v) +
                       "; move it into the face it is meant for",
                   {static_cast<std::int64_t>(seed.index)}, seed.pointer());
     }

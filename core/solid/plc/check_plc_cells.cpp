@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/resolution.hpp"
+#include "core/geometry/triangle_tree.hpp"
 #include "core/model/describe.hpp"
 #include "core/solid/plc/plc_cells.hpp"
 
@@ -38,10 +40,45 @@ Result<void> check_enclosure(const PlcComplex& complex, const PlcCells& cells) {
               std::move(elements));
 }
 
+// A seed on a facet between two cells is in neither. Facets within one cell leave no doubt.
+Result<void> check_seeds_off_facets(const PlcComplex& complex, const PlcCells& cells) {
+  if (complex.holes.empty() && complex.regions.empty()) return {};
+  std::vector<Triangle> triangles;
+  std::vector<std::int32_t> source;
+  for (std::size_t f = 0; f < complex.facets.size(); ++f) {
+    const ComplexFacet& facet = complex.facets[f];
+    for (std::size_t t = 0; t < facet.triangles.triangles.size(); ++t) {
+      const auto [front, back] = cells.sides[f][t];
+      if (front == back) continue;
+      triangles.push_back(facet.triangles.triangles[t]);
+      source.push_back(facet.source);
+    }
+  }
+  const TriangleTree tree(complex.points, triangles);
+  const double resolution = resolution_of(complex.diameter, complex.magnitude);
+  const auto check = [&](const char* kind, const char* list, std::size_t i, Point3 p) {
+    const TriangleTree::Hit hit = tree.nearest(p, resolution);
+    if (hit.triangle < 0) return Result<void>{};
+    return Result<void>(
+        fail(ErrorCode::kUnreachableSeed,
+             seed_name(kind, i, p) + " lies on facet " + std::to_string(source[at(hit.triangle)]) +
+                 "; move it into the cell it is meant for",
+             {static_cast<std::int64_t>(i)}, "/" + std::string(list) + "/" + std::to_string(i)));
+  };
+  for (std::size_t i = 0; i < complex.holes.size(); ++i) {
+    SYMCELL_TRY(check("hole", "holes", i, complex.holes[i]));
+  }
+  for (std::size_t i = 0; i < complex.regions.size(); ++i) {
+    SYMCELL_TRY(check("region", "regions", i, complex.regions[i].point));
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<void> check_cells(const PlcComplex& complex, const PlcCells& cells) {
   SYMCELL_TRY(check_enclosure(complex, cells));
+  SYMCELL_TRY(check_seeds_off_facets(complex, cells));
   const auto unreachable = [](const std::string& seed, std::size_t i, const char* list) {
     return fail(ErrorCode::kUnreachableSeed,
                 seed +

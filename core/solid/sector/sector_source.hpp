@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,15 @@ class SectorSource {
   // code if this candidate cannot be cut; limits.
   [[nodiscard]] virtual Result<Sector> sector(std::int32_t index,
                                               ExecutionContext& context) const = 0;
+
+  // Looks at points of a finished mesh's boundary, in the local frame, with all of their copies:
+  // whether each is as near to the model's surface as the tolerance says. Where a mesh keeps the
+  // facets as given, which other checks see to, there is nothing to look at.
+  // Errors: kInternal, limits.
+  [[nodiscard]] virtual Result<void> check_boundary(std::span<const Point3> /*points*/,
+                                                    ExecutionContext& /*context*/) const {
+    return {};
+  }
 };
 
 }  // namespace symcell::solid

@@ -343,6 +343,25 @@ Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
   return near ? Result<void>{} : failure;
 }
 
+// What samples of the sector did not show may show here.
+Result<void> SurfaceSectorSource::check_boundary(std::span<const Point3> points,
+                                                 ExecutionContext& context) const {
+  const RotationTable rotations(symmetry_.fold);
+  std::int32_t last = -1;
+  for (std::int32_t k = 0; k < symmetry_.fold; ++k) {
+    SYMCELL_TRY(context.check());
+    for (const Point3& p : points) {
+      const Point3 copy = rotations.rotate(p, k);
+      if (tree_.within(copy, tolerance_, last)) continue;
+      return fail(ErrorCode::kInternal,
+                  "the mesh's boundary is farther from the surface than the tolerance of " +
+                      describe_rounded(tolerance_) + " at " +
+                      describe_point(symmetry_.frame.to_model(copy)));
+    }
+  }
+  return {};
+}
+
 Result<Sector> SurfaceSectorSource::sector(std::int32_t index, ExecutionContext& context) const {
   const Candidate& candidate = candidates_[index];
   QuotientSurface quotient;

@@ -106,6 +106,8 @@ TEST(ValidatePslg, LocatesSeeds) {
   Pslg pslg = square();
   pslg.holes = {{5, 5}};
   expect_error(pslg, ErrorCode::kUnreachableSeed, {0}, "/holes/0");
+  pslg.holes = {pslg.vertices[0]};
+  expect_error(pslg, ErrorCode::kUnreachableSeed, {0}, "/holes/0");
   pslg = square();
   pslg.regions = {{{1, 1}, 1}, {{4, 2}, 1}};
   expect_error(pslg, ErrorCode::kUnreachableSeed, {1}, "/regions/1");

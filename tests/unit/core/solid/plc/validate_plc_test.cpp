@@ -208,6 +208,17 @@ TEST(ValidatePlc, CellsAndSeeds) {
 
   plc.holes.push_back({9, 4, 4});
   expect_refused(plc, ErrorCode::kUnreachableSeed, {"hole seed 1", "(9, 4, 4)"}, "/holes/1");
+  const auto& polygon = plc.facets[0].polygons[0];
+  const auto corner = [&](std::size_t i) {
+    return plc.vertices[static_cast<std::size_t>(polygon[i])];
+  };
+  // On a facet, on a side of it, at a corner.
+  for (const Point3 p : {0.25 * (corner(0) + corner(1) + corner(2) + corner(3)),
+                         0.5 * (corner(0) + corner(1)), corner(0)}) {
+    plc.holes[1] = p;
+    EXPECT_EQ(validate(plc).error().code, ErrorCode::kUnreachableSeed);
+    EXPECT_NE(validate(plc).error().message.find("lies on facet"), std::string::npos);
+  }
   plc.holes.pop_back();
   plc.regions.push_back({{1.5, 4, 4}, 2});
   expect_refused(plc, ErrorCode::kConflictingSeeds, {"hole seed 0", "region seed 1"}, "/regions/1");

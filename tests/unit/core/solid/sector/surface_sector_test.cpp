@@ -2,6 +2,8 @@
 // input's volume and shape.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/solid/sector/symmetrise.hpp"
 #include "tests/support/sector_checks.hpp"
 #include "tests/support/surface_builders.hpp"
@@ -46,6 +48,27 @@ double prism_volume(const PrismShape& shape) {
   const double area = shape.fold * shape.outer * shape.inner_tip * corner;
   const double share = shape.bore / shape.outer;
   return shape.height * area * (1 - share * share);
+}
+
+TEST(SurfaceSectorSource, PointsOffTheSurfaceAreFound) {
+  PrismShape shape;
+  shape.fold = 5;
+  const TriangleSurface surface = asymmetric_prism(shape, 7);
+  ExecutionContext context;
+  const auto source = symmetrise_surface(surface, with_fold(5), context);
+  ASSERT_TRUE(source) << source.error().message;
+  const Symmetry& symmetry = (*source)->symmetry();
+  const double tolerance = kSurfaceSymmetryToleranceRel * symmetry.diameter;
+  std::vector<Point3> points;
+  for (const Point3 p : surface.vertices) points.push_back(symmetry.frame.to_local(p));
+  EXPECT_TRUE((*source)->check_boundary(points, context));
+  // The end faces are the lowest and the highest of all.
+  const auto top = std::max_element(points.begin(), points.end(),
+                                    [](const Point3& p, const Point3& q) { return p.z < q.z; });
+  top->z += 0.9 * tolerance;
+  EXPECT_TRUE((*source)->check_boundary(points, context));
+  top->z += 0.2 * tolerance;
+  EXPECT_EQ((*source)->check_boundary(points, context).error().code, ErrorCode::kInternal);
 }
 
 class PrismFolds : public testing::TestWithParam<std::int32_t> {};
