@@ -32,7 +32,7 @@ enum class Sign : std::int8_t { kNegative = -1, kZero = 0, kPositive = 1 };
 }
 
 namespace internal {
-
+// u and the bounds derived at the head of this file.
 inline constexpr double kUnitRoundoff = 0x1p-53;
 inline constexpr double kOrientationBound = (3.0 + 16.0 * kUnitRoundoff) * kUnitRoundoff;
 inline constexpr double kInCircleBound = (10.0 + 96.0 * kUnitRoundoff) * kUnitRoundoff;

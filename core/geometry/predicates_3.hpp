@@ -26,7 +26,7 @@
 namespace symcell {
 
 namespace internal {
-
+// The bounds derived at the head of this file.
 inline constexpr double kOrientation3Bound = (7.0 + 56.0 * kUnitRoundoff) * kUnitRoundoff;
 inline constexpr double kInSphereBound = (16.0 + 224.0 * kUnitRoundoff) * kUnitRoundoff;
 inline constexpr double kOrientation3Underflow = 1e-260;

@@ -57,8 +57,8 @@ class SegmentIndex {
   }
 
  private:
-  static constexpr std::int32_t kLeafSize = 4;
-  static constexpr double kUnset = std::numeric_limits<double>::infinity();
+  static constexpr std::int32_t kLeafSize = 4;  // segments: worth a node
+  static constexpr double kUnset = std::numeric_limits<double>::infinity();  // empty box
 
   struct Box {
     Point2 low;

@@ -103,7 +103,7 @@ Result<std::vector<std::pair<std::int32_t, std::int32_t>>> self_intersections(
   Result<void> state;
   const TriangleTree tree(surface.points, triangles);
   tree.visit_meeting_boxes([&](std::int32_t a, std::int32_t b) {
-    constexpr std::uint64_t kCheckEvery = 4096;
+    constexpr std::uint64_t kCheckEvery = 4096;  // pairs of boxes
     if (++looked_at % kCheckEvery == 0) {
       state = context.check();
       if (!state) return true;

@@ -7,12 +7,12 @@
 namespace symcell {
 namespace {
 
-constexpr std::uint32_t kBits = kHilbertBits;
+constexpr std::uint32_t kBits = kHilbertBits;  // a coordinate
 
 }  // namespace
 
 std::uint64_t hilbert_place(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-  constexpr std::uint32_t kMost = (1U << kBits) - 1;
+  constexpr std::uint32_t kMost = (1U << kBits) - 1;  // the last place of an axis
   std::array<std::uint32_t, 3> c = {std::min(x, kMost), std::min(y, kMost), std::min(z, kMost)};
   // From the finest bit but one up, cells are reflected or their axes exchanged: inverse undo.
   for (std::uint32_t bit = 1U << (kBits - 1); bit > 1; bit >>= 1) {

@@ -31,7 +31,7 @@ struct TetFigures {
 
 // Corners in VTK's order, positively oriented.
 [[nodiscard]] inline TetFigures tet_figures(const std::array<Point3, 4>& p) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
+  constexpr double kFar = std::numeric_limits<double>::infinity();  // no angle yet
   TetFigures f;
   f.face_cot_max = f.dihedral_cot_max = -kFar;
   f.face_cot_min = f.dihedral_cot_min = kFar;

@@ -8,7 +8,7 @@
 #include "core/geometry/point.hpp"
 
 namespace symcell {
-
+// "No bound"; the largest angle bound, which few models can reach (docs/reference.md).
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kMaxMinAngleDeg = 42.0;
 // Exponents fit 16 bits in the triangulation; no real part comes near it.

@@ -22,8 +22,8 @@ namespace symcell::plane {
 namespace {
 
 // Near 40 degrees a run may cascade where another, with other sampled points, does not.
-constexpr int kAttempts = 6;
-constexpr int kSamples = 24;
+constexpr int kAttempts = 6;              // after them the bound is reported as out of reach
+constexpr int kSamples = 24;              // points tried for a bad triangle: each costs its star
 constexpr double kSamplingAngleDeg = 38;  // below, samples are taken from the second attempt on
 // Small cells are made several times, with other samples and for somewhat higher bounds (a coarse
 // model may come out smaller for them), and the one with the fewest triangles is kept: a few

@@ -91,6 +91,7 @@ std::string facet_name(const std::array<std::int32_t, 3>& nodes) {
 }
 
 std::span<const std::array<std::size_t, 2>> edge_corners(std::int32_t dimension) {
+  // In VTK's order of mid-side nodes.
   static constexpr std::array<std::array<std::size_t, 2>, 3> kTriangle{{{0, 1}, {1, 2}, {2, 0}}};
   static constexpr std::array<std::array<std::size_t, 2>, 6> kTetrahedron{
       {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};

@@ -31,7 +31,7 @@ class CellMeshBuilder {
   }
 
  private:
-  static constexpr std::int32_t kNoNode = -1;
+  static constexpr std::int32_t kNoNode = -1;  // of an orbit and exponent that the cell has not
 
   [[nodiscard]] std::int32_t exponent_in_cell(TriangleId t, std::uint32_t i) const {
     const Triangle& tri = mesh_.triangle(t);

@@ -11,7 +11,7 @@
 namespace symcell::plane {
 namespace {
 
-constexpr std::int32_t kUnset = -1;
+constexpr std::int32_t kUnset = -1;  // no component, exponent or way yet
 
 class CellCutter {
  public:

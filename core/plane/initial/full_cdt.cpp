@@ -18,7 +18,7 @@ using Point = Cdt::Point;
 using VertexHandle = Cdt::Vertex_handle;
 using FaceHandle = Cdt::Face_handle;
 
-constexpr std::size_t kCheckInterval = 4096;
+constexpr std::size_t kCheckInterval = 4096;  // points or copies of segments put in
 
 // Handles of the copies of orbit o: n from first[o], one for the centre.
 struct Handles {

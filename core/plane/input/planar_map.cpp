@@ -13,7 +13,7 @@
 namespace symcell::plane {
 namespace {
 
-constexpr std::int32_t kNone = -1;
+constexpr std::int32_t kNone = -1;  // no vertex, segment, piece or face
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);

@@ -21,10 +21,10 @@
 namespace symcell::plane {
 
 namespace internal {
-inline constexpr double kLiftInCircleRadius = 128.0 * symcell::internal::kUnitRoundoff;
-inline constexpr double kLiftInCircleLength = 64.0 * symcell::internal::kUnitRoundoff;
-inline constexpr double kLiftOrientationRadius = 24.0 * symcell::internal::kUnitRoundoff;
-inline constexpr double kLiftOrientationLength = 8.0 * symcell::internal::kUnitRoundoff;
+inline constexpr double kLiftInCircleRadius = 128.0 * symcell::internal::kUnitRoundoff;    // 120u
+inline constexpr double kLiftInCircleLength = 64.0 * symcell::internal::kUnitRoundoff;     // 60u
+inline constexpr double kLiftOrientationRadius = 24.0 * symcell::internal::kUnitRoundoff;  // 20u
+inline constexpr double kLiftOrientationLength = 8.0 * symcell::internal::kUnitRoundoff;   // 4u
 
 [[nodiscard]] inline double radius_bound(Point2 p) {
   return std::abs(p.x) + std::abs(p.y);
@@ -42,7 +42,7 @@ inline constexpr double kLiftOrientationLength = 8.0 * symcell::internal::kUnitR
 }
 
 // The bound is the same whichever of the points is d. `slack`: factor on it, for checks that must
-// not call uncertain what was left alone as uncertain before with other roundings.
+// not call certain what was left alone as uncertain before with other roundings.
 [[nodiscard]] inline Sign certain_in_circle(
     Point2 a, Point2 b, Point2 c, Point2 d, double radius, double slack = 1) {
   const Point2 ad = a - d, bd = b - d, cd = c - d;

@@ -35,8 +35,8 @@ using TriangleId = std::uint32_t;
 using HalfEdge = std::uint32_t;
 using SubsegmentId = std::int32_t;
 
-inline constexpr HalfEdge kNoHalfEdge = std::numeric_limits<HalfEdge>::max();
-inline constexpr SubsegmentId kNoSubsegment = -1;
+inline constexpr HalfEdge kNoHalfEdge = std::numeric_limits<HalfEdge>::max();  // no neighbour
+inline constexpr SubsegmentId kNoSubsegment = -1;                              // on no segment
 
 [[nodiscard]] constexpr std::uint32_t next3(std::uint32_t i) {
   return i == 2 ? 0 : i + 1;

@@ -97,6 +97,7 @@ Result<void> check_delaunay(const QuotientTriangulation& mesh, TriangleId t) {
 
 Result<void> validate(const QuotientTriangulation& mesh, ValidationLevel level) {
   using Check = Result<void> (*)(const QuotientTriangulation&, TriangleId);
+  // In the order of ValidationLevel.
   constexpr Check kLayers[] = {check_elements, check_incidence, check_embedding, check_delaunay};
   for (std::size_t layer = 0; layer <= static_cast<std::size_t>(level); ++layer) {
     for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {

@@ -11,10 +11,10 @@ namespace {
 // get fewer, so that the cost per triangle stays bounded.
 constexpr double kLeastGain = 0.001;
 constexpr int kMaxRounds = 24;
-constexpr std::size_t kVertexVisits = 16'000;
+constexpr std::size_t kVertexVisits = 16'000;  // of all rounds together
 // Moves tried to mend one removal before it is taken back.
 constexpr int kMendingMoves = 4;
-constexpr std::size_t kMostBadToMend = 3;
+constexpr std::size_t kMostBadToMend = 3;  // triangles: so few moves mend no more
 // Neighbours up to this many times as far (squared) as the nearest are tried for a merge: the
 // others hardly ever have room (measured: a tenth of the time for nothing).
 constexpr double kNearNeighbour2 = 1.5;
@@ -63,7 +63,7 @@ Result<void> Coarsener::run() {
   if (points == 0) return {};
   const int rounds = static_cast<int>(
       std::clamp<std::size_t>(kVertexVisits / points, 1, static_cast<std::size_t>(kMaxRounds)));
-  constexpr std::size_t kCheckInterval = 64;
+  constexpr std::size_t kCheckInterval = 64;  // vertices: each is tried for merge and removal
   for (int round = 0; round < rounds; ++round) {
     std::size_t gained = 0;
     for (std::size_t i = 0; i < order.size(); ++i) {

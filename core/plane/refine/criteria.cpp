@@ -9,7 +9,7 @@
 namespace symcell::plane {
 namespace {
 
-constexpr double kRadian = std::numbers::pi / 180.0;
+constexpr double kRadian = std::numbers::pi / 180.0;  // a degree
 // Two points on shells of one acute vertex count as equally far from it within this ratio; shells
 // themselves are a factor of two apart.
 constexpr double kShellRatio = 1e-3;

@@ -18,7 +18,7 @@
 
 namespace symcell::plane {
 
-inline constexpr double kAngleMarginDeg = 1e-7;
+inline constexpr double kAngleMarginDeg = 1e-7;  // see above: for the rounding of output
 // Segments meeting below this angle are split on concentric shells [Ruppert95 sec. 7].
 inline constexpr double kShellAngleDeg = 60.0;
 // For bounds below this, lenses are those of this bound: a flatter lens would let points lie next

@@ -18,12 +18,13 @@ constexpr double kCascadeRatio = 1e-5;
 constexpr double kResolution = 1e-12;
 // A vertex is relocated at most this often while refining: area bounds could make it wander.
 constexpr std::uint8_t kMaxMoves = 12;
-constexpr std::uint64_t kTickInterval = 256;
+constexpr std::uint64_t kTickInterval = 256;  // steps: some cost nothing, some an insertion
 // Off-centres lie where the new triangle's angle is a little above the bound [Shewchuk, Triangle].
 constexpr double kOffCentreFactor = 0.475;
 // Samples lie within this many shortest edges of the off-centre.
 constexpr double kSampleReach = 1.5;
 
+// Bits of Subsegment::queued: to be split if encroached on, and in any case.
 constexpr std::uint8_t kQueued = 1;
 constexpr std::uint8_t kForced = 2;
 

@@ -8,6 +8,8 @@
 namespace symcell::plane {
 namespace {
 
+// Points that folds are tested by, half of them the rarest; and look-ups of the nearest segment a
+// fold, of which large folds get a spread of their turns. Both bound the time of a detection.
 constexpr std::size_t kMaxSamples = 2000;
 constexpr std::int64_t kQueriesPerFold = 50'000;
 

@@ -25,7 +25,7 @@ Failure degenerate(const std::string& what) {
 Result<std::vector<std::int32_t>> face_labels(const Pslg& lifted,
                                               const PlanarMap& map,
                                               const std::vector<ClosedOrbits::Sides>& sides) {
-  constexpr std::int32_t kUnknown = kNotMeshed - 1;
+  constexpr std::int32_t kUnknown = kNotMeshed - 1;  // no segment of the face seen yet
   std::vector<std::int32_t> labels(at(map.face_count), kUnknown);
   labels.front() = kNotMeshed;
   for (std::size_t p = 0; p < map.pieces.size(); ++p) {

@@ -91,7 +91,7 @@ class Closure {
   // most segments join representatives.
   void choose_sector() {
     if (fold() == 1) return;
-    constexpr int kBins = 256;
+    constexpr int kBins = 256;  // directions tried, of one sector
     std::vector<std::int64_t> change(kBins + 1, 0);
     const auto bin_of = [this](double angle) {
       const double turns = angle / sector_;

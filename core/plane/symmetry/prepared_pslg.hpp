@@ -11,8 +11,8 @@
 
 namespace symcell::plane {
 
-inline constexpr std::int32_t kNotMeshed = -2;
-inline constexpr std::int32_t kNoRegion = -1;
+inline constexpr std::int32_t kNotMeshed = -2;  // labels of faces
+inline constexpr std::int32_t kNoRegion = -1;   // meshed, without a seed
 
 struct PreparedEdge {
   std::int32_t a = 0;

@@ -36,7 +36,7 @@ class CellBuilder {
   }
 
  private:
-  static constexpr std::int32_t kNoNode = -1;
+  static constexpr std::int32_t kNoNode = -1;  // of an orbit and exponent that the cell has not
 
   [[nodiscard]] static std::size_t idx(std::int32_t i) { return static_cast<std::size_t>(i); }
 

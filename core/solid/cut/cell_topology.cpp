@@ -17,6 +17,7 @@ std::uint64_t name(TetId t, std::int32_t e) {
 }  // namespace
 
 std::string_view cell_flaw_name(CellFlawKind kind) {
+  // In the order of CellFlawKind.
   constexpr std::string_view kNames[kCellFlawKinds] = {"two split faces at an edge",
                                                        "symmetry edge without a symmetry face",
                                                        "symmetry vertex without a symmetry face",

@@ -37,7 +37,7 @@ enum class CellFlawKind : std::uint8_t {
   kDisconnected,
   kFarFace
 };
-inline constexpr std::size_t kCellFlawKinds = 7;
+inline constexpr std::size_t kCellFlawKinds = 7;  // enumerators above
 
 [[nodiscard]] std::string_view cell_flaw_name(CellFlawKind kind);
 

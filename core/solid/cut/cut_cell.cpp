@@ -13,7 +13,7 @@
 namespace symcell::solid {
 namespace {
 
-constexpr std::int32_t kUnset = -1;
+constexpr std::int32_t kUnset = -1;  // part of a tetrahedron not yet visited
 
 // Parts of the solid that touch in no face may be turned one by one: brings them next to the
 // largest, and that one to the sector that begins at the x axis.
@@ -107,7 +107,7 @@ void raise_weights(const Representatives& cell,
                    FaceWeights& weights) {
   const QuotientTetrahedralization& mesh = cell.mesh();
   if (weights.empty()) weights.assign(4 * mesh.tet_slots(), 1);
-  constexpr std::uint8_t kMost = 200;
+  constexpr std::uint8_t kMost = 200;  // faces; below the 255 that a weight can hold
   const auto raise = [&](HalfFace h) {
     const HalfFace g = mesh.tet(tet_of(h)).nb[face_of(h)];
     if (cell.jump(h) == 0 || weights[h] >= kMost) return;

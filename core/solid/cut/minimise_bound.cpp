@@ -8,9 +8,11 @@
 namespace symcell::solid {
 namespace {
 
+// No neighbour to pass units to; the label of tetrahedra from which no way leads to one that takes
+// units.
 constexpr TetId kNoTet = std::numeric_limits<TetId>::max();
 constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
-constexpr std::uint32_t kStepsBetweenChecks = 8192;
+constexpr std::uint32_t kStepsBetweenChecks = 8192;  // a step discharges one tetrahedron
 
 // flow(h) is the slope of the cost of face h at its jump, antisymmetric; excess(t), the sum over
 // its faces, is the slope of the total cost in x_t. Tetrahedra with a negative excess have units to

@@ -27,7 +27,7 @@
 
 namespace symcell::solid {
 
-inline constexpr std::int32_t kFarCost = 1000;
+inline constexpr std::int32_t kFarCost = 1000;  // symmetry faces, see above; above any weight
 
 // What a symmetry face costs, per half-face, equal on both sides, 1 to 255; empty: 1 each.
 using FaceWeights = std::vector<std::uint8_t>;

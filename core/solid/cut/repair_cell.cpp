@@ -14,10 +14,10 @@
 namespace symcell::solid {
 namespace {
 
-constexpr int kRounds = 16;             // of pieces and vertices in turn
-constexpr std::int32_t kLayers = 4;     // by which a ball grows round a star
-constexpr std::size_t kMaxBall = 4000;  // tetrahedra
-constexpr std::size_t kVerticesBetweenChecks = 64;
+constexpr int kRounds = 16;                         // of pieces and vertices in turn
+constexpr std::int32_t kLayers = 4;                 // by which a ball grows round a star
+constexpr std::size_t kMaxBall = 4000;              // tetrahedra
+constexpr std::size_t kVerticesBetweenChecks = 64;  // each has a star searched
 
 struct Move {
   TetId t;

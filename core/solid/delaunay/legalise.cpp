@@ -13,7 +13,7 @@ namespace {
 constexpr double kCertainShare = 1e-9;
 // Flips a tetrahedron at most: each lowers the lifted surface, but rounding could make a cycle.
 constexpr std::uint64_t kMaxFlipsATet = 5;
-constexpr std::uint64_t kCheckEvery = 1024;
+constexpr std::uint64_t kCheckEvery = 1024;  // faces: most need no flip
 
 class Legaliser {
  public:
@@ -147,6 +147,7 @@ class Legaliser {
     return editor_.replace(ring_, tets_);
   }
 
+  // Of the volume before: above the rounding of lifted corners, while a flip that folds adds more.
   static constexpr double kSameVolume = 1e-6;
 
   Editor& editor_;

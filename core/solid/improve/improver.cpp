@@ -6,7 +6,7 @@
 namespace symcell::solid {
 namespace {
 
-constexpr std::uint64_t kCheckEvery = 64;
+constexpr std::uint64_t kCheckEvery = 64;  // steps, which cost far more than a look at the clock
 constexpr std::uint64_t kCheckEveryDetours = 4;  // a tetrahedron's detours take some milliseconds
 // Bound on the steps of one round, a tetrahedron: two operations cannot undo each other (each
 // betters the worst), but a round need not go on for what little is left.

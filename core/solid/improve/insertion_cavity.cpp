@@ -16,7 +16,8 @@ constexpr int kMostGrown = 24;
 constexpr std::array<double, 3> kCoarseSteps = {0.3, 0.15, 0.07};
 constexpr std::array<double, 5> kFineSteps = {0.1, 0.05, 0.025, 0.012, 0.006};
 constexpr int kMostTurns = 4;
-constexpr double kDiagonal = 0.577;
+// Along the axes and to the corners of a cube; all of length 1.
+constexpr double kDiagonal = 0.577;  // 1 / sqrt(3)
 constexpr std::array<Point3, 14> kWays = {{{1, 0, 0},
                                            {-1, 0, 0},
                                            {0, 1, 0},

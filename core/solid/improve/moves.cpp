@@ -98,6 +98,7 @@ bool Surgery::smooth(VertexId v) {
   }
   const double reach = std::sqrt(reach2);
   const bool search = is_broken(best) || best.shape < kGoodTet;
+  // Unit vectors: both ways along the axes, and one out of their planes.
   constexpr std::array<Point3, 7> kWays = {
       {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {0.577, 0.577, 0.577}}};
   for (const double step : kSteps) {

@@ -86,7 +86,7 @@ class Surgery {
   [[nodiscard]] std::span<const Neighbour> neighbours(VertexId v);
 
  private:
-  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  static constexpr double kFar = std::numeric_limits<double>::infinity();  // no limit
   // Beyond any excess of a radius-edge ratio that is not of a flat tetrahedron.
   static constexpr double kOversized = 1e12;
   // Least sine that a lenient operation may leave: 3 degrees.

@@ -25,7 +25,7 @@ constexpr int kExitRefused = 88;
 constexpr long kFirstPauseNs = 200'000;
 constexpr long kLongestPauseNs = 10'000'000;
 
-// Sanitizers reserve terabytes of address space for their shadow.
+// Sanitizers reserve terabytes of address space for their shadow: then it is not limited.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kSanitized = true;
 #elif defined(__has_feature)

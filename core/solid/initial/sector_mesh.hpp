@@ -14,7 +14,7 @@
 
 namespace symcell::solid::initial {
 
-inline constexpr std::int32_t kNoLabel = -1;
+inline constexpr std::int32_t kNoLabel = -1;  // a face inside
 
 // Covers the sector's convex hull. Corner and face numbering as in QuotientTetrahedralization.
 struct SectorMesh {

@@ -24,7 +24,7 @@ Result<void> check_enclosure(const PlcComplex& complex, const PlcCells& cells) {
   if (cells.cells.size() > 1) return {};
   std::string message = "the facets enclose no volume";
   std::vector<std::int64_t> elements;
-  constexpr std::size_t kNamed = 3;
+  constexpr std::size_t kNamed = 3;  // open segments in the message
   for (std::size_t i = 0; i < std::min(kNamed, cells.open_edges.size()); ++i) {
     const ComplexEdge& e = complex.edges[at(cells.open_edges[i])];
     message += std::string(i == 0 ? ": open at the segment" : ", at that") + " from vertex " +

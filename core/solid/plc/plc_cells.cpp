@@ -20,7 +20,8 @@ std::size_t at(std::int32_t i) {
 // Turns the model so that no facet stands upright and no two vertices above each other but by rare
 // accident: rays along z then meet few degenerate cases. An arbitrary rotation.
 Point3 tilt(Point3 p) {
-  constexpr double kA = 20.0 / 29, kB = 21.0 / 29;  // cosines and sines by Pythagorean triples
+  // Cosines and sines by Pythagorean triples.
+  constexpr double kA = 20.0 / 29, kB = 21.0 / 29;
   constexpr double kC = 12.0 / 37, kD = 35.0 / 37;
   const Point3 q{kA * p.x - kB * p.y, kB * p.x + kA * p.y, p.z};
   return {q.x, kC * q.y - kD * q.z, kD * q.y + kC * q.z};

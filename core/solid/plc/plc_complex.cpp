@@ -123,7 +123,7 @@ Point3 facet_normal(const Plc& plc, const PlcFacet& facet) {
   }
   constexpr double kFlat = 1e-12;  // width over length below which there is no plane but noise
   if (length(wide) <= kFlat * squared_length(far)) return {0, 0, 0};
-  constexpr double kCancelled = 1e-9;
+  constexpr double kCancelled = 1e-9;  // of the widest triangle: less is a sum that cancelled
   if (length(best) <= kCancelled * length(wide)) best = wide;
   return (1 / length(best)) * best;
 }

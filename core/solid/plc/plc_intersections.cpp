@@ -199,7 +199,7 @@ class Checker {
     Result<void> result;
     std::uint64_t looked_at = 0;
     const auto look = [&] {
-      constexpr std::uint64_t kCheckEvery = 4096;
+      constexpr std::uint64_t kCheckEvery = 4096;  // pairs of boxes
       if (++looked_at % kCheckEvery != 0) return;
       result = context_.check();
       if (!result) throw Stop{};

@@ -20,7 +20,7 @@
 namespace symcell::solid {
 
 namespace internal {
-
+// At least 30u R L^2 and 9u L^3 of an orientation, 200u R L^4 and 75u L^5 of in_sphere.
 inline constexpr double kLiftOrientation3Radius = 32.0 * symcell::internal::kUnitRoundoff;
 inline constexpr double kLiftOrientation3Length = 12.0 * symcell::internal::kUnitRoundoff;
 inline constexpr double kLiftInSphereRadius = 256.0 * symcell::internal::kUnitRoundoff;

@@ -37,7 +37,7 @@ namespace symcell::solid {
 
 using TetId = std::uint32_t;
 using HalfFace = std::uint32_t;
-
+// Beyond an outer face there is no neighbour; faces and edges inside lie on no facet or segment.
 inline constexpr HalfFace kNoHalfFace = std::numeric_limits<HalfFace>::max();
 inline constexpr std::int32_t kNoFacet = -1;
 inline constexpr std::int32_t kNoSegment = -1;

@@ -10,7 +10,7 @@
 namespace symcell::solid {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
+constexpr double kRadians = std::numbers::pi / 180;  // a degree
 // A bound is kept to this relative precision, so that rounding in a checker does not break it.
 constexpr double kBoundSafety = 1e-9;
 // Angles are compared with their limit to this many radians.

@@ -16,8 +16,8 @@
 
 namespace symcell::solid {
 
-inline constexpr double kSharpDeg = 70;
-inline constexpr double kNarrowSectorDeg = 60;
+inline constexpr double kSharpDeg = 70;  // about the dihedral angle of a regular tetrahedron, 70.5
+inline constexpr double kNarrowSectorDeg = 60;  // from it on that ratio is 1 at most
 
 enum class Exemption : std::uint8_t { kNone, kSmallInputAngle, kAxis };
 

@@ -18,10 +18,11 @@ constexpr double kFacetShare = 0.65;
 constexpr double kSegmentShare = 0.45;
 // Likewise for the sake of size, of the cube root of the volume.
 constexpr double kSizeShare = 0.3;
+// Ends of walks that rounding could send in circles: subfacets crossed, tetrahedra round an edge.
 constexpr int kMaxPlaneWalk = 1000;
 constexpr int kMaxTurns = 500;
-constexpr std::uint64_t kCheckEvery = 256;
-// Of the queue's key.
+constexpr std::uint64_t kCheckEvery = 256;  // steps: some cost nothing, some an insertion
+// Of the queue's key: below all others; sizes within a sixteenth of an octave go by slot.
 constexpr std::int32_t kLast = std::numeric_limits<std::int32_t>::min();
 constexpr double kStepsAnOctave = 16;
 // A mesh that has grown by this factor, to this size at least, is put in order again.
@@ -156,7 +157,7 @@ bool Refiner::allowed(const Cavity& cavity, const Cause& cause, double share) co
 // Bounds on size must be kept, however the cavity has to be cut down; for the sake of shape a point
 // that many tetrahedra hide from does no good.
 bool Refiner::find_cavity(Point3 p, const Location& where, const Cause& cause) {
-  constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+  constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();  // tetrahedra dropped
   return editor_.find_cavity(p, where, cavity_, cause.size ? kAny : Editor::kManyDropped);
 }
 

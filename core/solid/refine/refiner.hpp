@@ -44,7 +44,7 @@ struct RefineCounters {
 
 class Refiner {
  public:
-  static constexpr int kMaxChain = 8;
+  static constexpr int kMaxChain = 8;  // points: the deepest that any run asks for
 
   Refiner(Editor& editor, const Criteria& criteria, ExecutionContext& context);
 

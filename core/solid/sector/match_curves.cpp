@@ -37,7 +37,7 @@ std::vector<CurveMatch> match_curves(std::span<const Point2> a,
   const std::size_t rows = a.size(), columns = b.size();
   if (rows < 2 || columns < 2 || rows > kMostTableCells / columns) return {};
   const double lone = lone_cost * lone_cost;
-  constexpr double kNever = std::numeric_limits<double>::infinity();
+  constexpr double kNever = std::numeric_limits<double>::infinity();  // cost of what is not reached
   std::vector<Step> steps(rows * columns, Step::kNone);
   std::vector<double> previous(columns, kNever), current(columns, kNever);
   for (std::size_t i = 0; i < rows; ++i) {

@@ -30,10 +30,10 @@ constexpr double kShellShare = 0.5;
 // worked best on real files; the others are for those it fails on. Wide tolerances move more than
 // narrow sectors and small features bear: then less of them is used.
 struct Way {
-  double snap_share;
-  double tolerance_share;
-  double shell_share;
-  std::int32_t cuts;
+  double snap_share;       // of the tolerance
+  double tolerance_share;  // of the tolerance
+  double shell_share;      // of the symmetry error: kShellShare or none
+  std::int32_t cuts;       // tried this way
 };
 constexpr std::array<Way, 9> kWays = {{{0.3, 1, 0, 12},
                                        {1, 1, 0, 4},

@@ -15,7 +15,7 @@ namespace {
 
 // Normals that differ by less than 35 degrees: the surface goes on smoothly.
 constexpr double kSmoothCosine = 0.82;
-constexpr double kSmoothShare = 0.5;
+constexpr double kSmoothShare = 0.5;  // of the boundary: with more a patch is of a curved part
 // Of the boundary: a side to a neighbour that counts.
 constexpr double kSignificantShare = 0.2;
 

@@ -13,8 +13,8 @@
 
 namespace symcell::solid {
 
-inline constexpr std::uint8_t kCreaseSide = 1;
-inline constexpr std::uint8_t kCutSide = 2;
+inline constexpr std::uint8_t kCreaseSide = 1;  // bits of a mark
+inline constexpr std::uint8_t kCutSide = 2;     // on a side at the cut
 
 // One triangle as it will be.
 struct PlannedTriangle {

@@ -25,7 +25,10 @@ namespace {
 constexpr double kGoodTriangle = 0.25;
 // Triangles in planar patches get flipped later anyhow: they must only not be needles.
 constexpr double kGoodPlanarShape = 0.05;
+// Thinner ones keep the normal of the input, as their own is noise.
 constexpr double kSliverShape = 0.02;
+// Most passes that collapse or settle flips, and rounds that shape, in case they go on undoing each
+// other: they end earlier where little is gained.
 constexpr int kMostPasses = 12;
 constexpr int kRounds = 10;
 // Triangles of curved parts flatter than this are split, down to sides of so many deviations.
@@ -33,7 +36,7 @@ constexpr double kWantedShape = 0.42;
 constexpr double kLeastSplit = 10;
 // A neighbour's side is halved first if it is longer by this factor, squared.
 constexpr double kLonger = 1.0001;
-constexpr int kMostPropagation = 100;
+constexpr int kMostPropagation = 100;  // steps from neighbour to neighbour
 // A pass that changes less than this share of the surface is the last one.
 constexpr double kWorthwhile = 0.005;
 // A flip or a move must raise the worst shape by this factor.
@@ -44,7 +47,7 @@ constexpr double kDelaunayGain = 0.02;
 constexpr double kFitShape = 0.95;
 // Rounding that a vertex may be off the planes of its patches, of the extent.
 constexpr double kPlaneRounding = 1e-11;
-constexpr std::size_t kCheckEvery = 256;
+constexpr std::size_t kCheckEvery = 256;  // triangles or vertices: some cost nothing
 
 // A triangle that has changed its place shows its own normal, unless it is a sliver.
 void refresh_normals(QuotientSurface& surface) {

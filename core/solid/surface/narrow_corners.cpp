@@ -21,7 +21,7 @@ constexpr int kDirections = 8;
 constexpr double kWider = 1.03;
 // Ways to one neighbour, seen from two triangles, differ by rounding: squared, of their length.
 constexpr double kSameWay = 1e-12;
-constexpr int kMostPasses = 12;
+constexpr int kMostPasses = 12;  // at most: one that opens nothing is the last
 
 int narrow_corners(const std::array<Point3, 3>& p) {
   int count = 0;

@@ -18,14 +18,14 @@ constexpr double kFlatShare = 1e-4;
 constexpr double kNormalCosine = 0.99;
 // Triangles thinner than this many tolerances have no normal worth asking.
 constexpr double kThinTolerances = 20;
-constexpr int kMostGrowths = 8;
+constexpr int kMostGrowths = 8;  // fits of a plane, at most: one that adds nothing is the last
 // Planes closer to parallel than this (sine) have no well-defined common line.
 constexpr double kParallelSine = 0.02;
 // What is left of a vertex's distance from its planes, of the surface's extent: rounding.
 constexpr double kRoundingRel = 1e-13;
 // A vertex moves at most this many tolerances to reach all its planes.
 constexpr double kMostMoves = 8;
-constexpr std::size_t kCheckEvery = 1024;
+constexpr std::size_t kCheckEvery = 1024;  // triangles: most are in a patch already
 
 class PatchFinder {
  public:

@@ -14,7 +14,7 @@ namespace {
 
 // A shell thinner than this share of its box is no body: its volume's sign would be noise.
 constexpr double kFlatVolumeRel = 1e-12;
-constexpr std::size_t kCheckEvery = 512;
+constexpr std::size_t kCheckEvery = 512;  // shells, each against all others
 
 struct Neighbour {
   std::int32_t triangle = -1;

@@ -24,9 +24,13 @@ constexpr std::size_t kManyFolds = 24;
 constexpr double kRoughTolerances = 6;
 // Principal moments that differ by less tell no axis.
 constexpr double kSimilarMoments = 0.01;
+// Directions spread over half a sphere where the moments are equal: fewer lie too far apart for the
+// refinement to find the axis, more take their time.
 constexpr std::size_t kScannedDirections = 1500;
 // Half the spacing of those directions (radians) times half a diameter, as a share of it.
 constexpr double kScanReach = 0.025;
+// Points that judge a direction, and how many of the best directions are refined: a scan is rough,
+// and there may be that many axes of a cube or the like (13) and as many near misses.
 constexpr std::size_t kScanSamples = 60;
 constexpr std::size_t kRefinedOfScan = 24;
 constexpr std::int32_t kMostScannedFold = 6;  // equal moments come with cubic symmetry
@@ -34,6 +38,7 @@ constexpr std::int32_t kMostScannedFold = 6;  // equal moments come with cubic s
 constexpr double kFarOff = 0.04;
 // Axes nearer than this (radians) are one.
 constexpr double kSameAxis = 1e-2;
+// A fold stands out, or rules another one out, if its error is smaller by this factor.
 constexpr double kDominance = 4;
 // Of two folds the larger one leads unless the other fits better by this factor.
 constexpr double kMuchBetter = 0.7;
@@ -204,7 +209,7 @@ class Detector {
       }
     }
     if (options_.axis_direction) nice.direction = axis.direction;
-    constexpr std::size_t kSamples = 1000;
+    constexpr std::size_t kSamples = 1000;  // points: two means are compared to 5 %
     const double cap = tolerance_;
     const double before = shape_.mean_error(axis, angle, cap, kSamples);
     const double after = shape_.mean_error(nice, angle, cap, kSamples);
@@ -224,7 +229,7 @@ class Detector {
     return sorted;
   }
   [[nodiscard]] double rough_error(const SymmetryAxis& axis, std::int32_t fold) const {
-    constexpr std::size_t kSamples = 200;
+    constexpr std::size_t kSamples = 200;  // points: a rough look that sorts the axes
     return shape_.mean_error(axis, 2 * std::numbers::pi / fold, kFarOff * diameter_, kSamples);
   }
   [[nodiscard]] bool fits_nearly(const SymmetryAxis& axis, std::int32_t fold) const {
@@ -306,7 +311,7 @@ class Detector {
     std::int32_t leader = folds.front();
     double leading = kInfinity;
     for (const std::int32_t n : folds) {
-      constexpr std::size_t kSamples = 300;
+      constexpr std::size_t kSamples = 300;  // points, for each of up to 400 folds
       const double error =
           shape_.mean_error(candidate, 2 * std::numbers::pi / n, kRoughTolerances * tolerance_,
                             kSamples, kMuchBetter * leading);
@@ -386,7 +391,7 @@ class Detector {
   // Of a shape that all angles fit: the folds that fit much better than an odd angle.
   [[nodiscard]] std::vector<std::int32_t> outstanding(
       const SymmetryAxis& axis, const std::vector<std::int32_t>& folds) const {
-    constexpr std::size_t kSamples = 1000;
+    constexpr std::size_t kSamples = 1000;  // points: means are compared to a factor of four
     const auto mean = [&](double share) {
       return shape_.mean_error(axis, 2 * std::numbers::pi * share, tolerance_, kSamples);
     };

@@ -170,7 +170,7 @@ class CandidateSearch {
 
   // Components that are rounding errors become zero.
   static Point3 clean(Point3 d) {
-    constexpr double kRounding = 1e-12;
+    constexpr double kRounding = 1e-12;  // of the length: some digits above roundoff
     const double size = length(d);
     const auto keep = [&](double x) { return std::abs(x) <= kRounding * size ? 0.0 : x; };
     return {keep(d.x), keep(d.y), keep(d.z)};
@@ -178,7 +178,7 @@ class CandidateSearch {
 
   // One direction of each pair of opposite ones: the last large component is positive.
   static Point3 canonical(Point3 d) {
-    constexpr double kLarge = 1e-6;
+    constexpr double kLarge = 1e-6;  // of a unit vector: its sign is not one of rounding
     const double first = std::abs(d.z) > kLarge ? d.z : std::abs(d.y) > kLarge ? d.y : d.x;
     return first < 0 ? -1.0 * d : d;
   }
@@ -191,7 +191,7 @@ class CandidateSearch {
       if (++tried_ > std::min(kMaxDirections, kMaxWork / points_.size())) return;
       direction = canonical((1 / size) * direction);
     }
-    constexpr double kSame = 1e-7;
+    constexpr double kSame = 1e-7;  // sine of the angle between two that are one but for rounding
     for (const AxisCandidate& c : result_) {
       if (length(cross(c.frame.direction(), direction)) <= kSame) return;
     }

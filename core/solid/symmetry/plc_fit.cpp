@@ -287,7 +287,7 @@ PlcFit PlcMatcher::fit(std::int32_t fold, const AxisFrame& frame, bool adjust) c
   result.frame = frame;
   Images images = images_of(fold, frame);
   constexpr double kReach = 16;  // times the tolerance: how far off a guessed axis may be
-  constexpr int kSteps = 3;
+  constexpr int kSteps = 3;      // at most: one that does not help is the last
   // Below the rounding of positions an axis is not improved but blurred.
   constexpr double kRounding = 32 * 0x1p-53;
   const double finest = kRounding * std::max(complex_.diameter, complex_.magnitude);

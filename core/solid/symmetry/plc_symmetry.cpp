@@ -144,7 +144,7 @@ class SymmetrySearch {
     if (!found_ && axes.list.empty()) return;
     const AxisCandidate& axis = best_.accepted ? best_axis_ : axes.list.front();
     const AxisFrame& frame = best_.accepted ? best_.frame : axis.frame;
-    constexpr std::size_t kRungs = 64;
+    constexpr std::size_t kRungs = 64;  // folds shown by inspection; each costs a fit
     std::vector<std::int32_t> folds = divisors_above_one(axis.greatest_fold);
     if (folds.size() > kRungs) folds.resize(kRungs);
     for (const std::int32_t fold : folds) {

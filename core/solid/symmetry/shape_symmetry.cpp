@@ -13,13 +13,16 @@
 namespace symcell::solid {
 namespace {
 
+// Points spread at random over the surface: all that are drawn, those (half of them vertices) that
+// decide quickly whether a turn fits, and those that an axis is refined by. More see smaller
+// features and take longer.
 constexpr std::size_t kSpreadSamples = 4000;
 constexpr std::size_t kFitSamples = 240;
 constexpr std::size_t kRefineSamples = 2500;
 // Distances of one error: enough that no feature that counts escapes, few enough for a second.
 constexpr std::size_t kMostDistances = 150'000;
-constexpr std::size_t kLeastSamples = 1000;
-constexpr int kMostIterations = 16;
+constexpr std::size_t kLeastSamples = 1000;  // of a large fold
+constexpr int kMostIterations = 16;          // of the axis; a step that is small ends them earlier
 // The first iterations look at fewer points, until a step is below this share of the diameter or
 // they are so many. The last step is below the other.
 constexpr std::size_t kRoughSamples = 400;
@@ -28,7 +31,7 @@ constexpr double kRoughStep = 1e-5;
 constexpr double kLeastStep = 1e-11;
 // Points farther than this from the surface, of the diameter, do not pull at the axis.
 constexpr double kPullReach = 0.1;
-constexpr std::size_t kCheckEvery = 4096;
+constexpr std::size_t kCheckEvery = 4096;  // samples: a cheap search each
 
 // Gaussian elimination with pivoting; false if singular.
 bool solve(std::array<std::array<double, 5>, 4>& m, std::array<double, 4>& x) {
