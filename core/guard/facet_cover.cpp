@@ -8,20 +8,17 @@
 #include <utility>
 
 #include "core/geometry/rotation.hpp"
+#include "core/geometry/tolerances.hpp"
 
 namespace symcell {
 namespace {
 
-// Facets are flat to this share of the model's diameter (kPlanarityToleranceRel of
-// validate_plc.hpp): other triangles of one have another area by a strip of that width along its
-// outline at most.
-constexpr double kFlatnessRel = 1e-7;
-// And bend by no more than that, of the diameter and of what they bend by as given; a vertex that
-// is moved within its facet a few times may leave that strip a little.
-constexpr double kBendRel = 10 * kFlatnessRel;
+// Facets are flat to kPlanarityToleranceRel: other triangles of one have another area by a strip of
+// that width along its outline at most. And bend by no more than that, of the diameter and of what
+// they bend by as given; a vertex that is moved within its facet a few times may leave that strip a
+// little.
+constexpr double kBendRel = 10 * kPlanarityToleranceRel;
 constexpr double kBendFactor = 10;
-// Sums of rounded lengths and areas.
-constexpr double kRoundingRel = 1e-9;
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -227,7 +224,7 @@ Result<void> compare_facet_covers(const FacetCover& wanted,
     const auto length = [&](const FacetCover& c) {
       return s < c.segment_lengths.size() ? c.segment_lengths[s] : 0.0;
     };
-    if (std::abs(length(found) - length(wanted)) <= kRoundingRel * (length(wanted) + diameter)) {
+    if (std::abs(length(found) - length(wanted)) <= kSumRoundingRel * (length(wanted) + diameter)) {
       continue;
     }
     return broken("segment " + std::to_string(s) + " has a length of " +
@@ -240,7 +237,7 @@ Result<void> compare_facet_covers(const FacetCover& wanted,
     const FacetCover::Facet w = facet(wanted), g = facet(found);
     const double area = w.one_sided_area + w.two_sided_area;
     const double allowed =
-        kRoundingRel * area + kFlatnessRel * diameter * (w.outline + std::sqrt(area));
+        kSumRoundingRel * area + kPlanarityToleranceRel * diameter * (w.outline + std::sqrt(area));
     if (std::abs(g.one_sided_area - w.one_sided_area) <= allowed &&
         std::abs(g.two_sided_area - w.two_sided_area) <= allowed) {
       continue;

@@ -18,10 +18,8 @@ namespace {
 // A vertex farther than this from where an image of another should be, as a share of the diameter,
 // is another vertex and no near miss.
 constexpr double kNearMissRel = 1e-5;
-// Distances tried in turn at which vertices of a surface are one, and at which one lies on an open
-// edge, as shares of the diameter.
+// Distances tried in turn at which vertices of a surface are one, as shares of the diameter.
 constexpr std::array<double, 5> kWeldRel{1e-8, 1e-7, 1e-6, 1e-5, 3e-5};
-constexpr double kJunctionRel = 1e-6;
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -195,7 +193,7 @@ IndexedSurface closed_surface(const TriangleSurface& given, double size) {
     if (!welded.triangles.empty() && closure_of(welded).closed) return welded;
   }
   IndexedSurface split = exact;
-  solid::split_at_t_junctions(split, kJunctionRel * size);
+  solid::split_at_t_junctions(split, solid::kJunctionRel * size);
   return closure_of(split).closed ? split : exact;
 }
 

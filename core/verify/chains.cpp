@@ -1,6 +1,5 @@
 // Straight chains of mesh edges, and the elements that hold given points.
 #include <algorithm>
-#include <limits>
 
 #include "core/geometry/predicates.hpp"
 #include "core/geometry/predicates_3.hpp"
@@ -8,8 +7,6 @@
 
 namespace symcell::internal {
 namespace {
-
-constexpr double kFar = std::numeric_limits<double>::infinity();
 
 // Also on the element's boundary.
 bool holds(const std::array<Point3, 4>& p, const Point3& q, std::int32_t dimension) {

@@ -1,7 +1,6 @@
 // The full mesh as copies of the cell: restored from the cell's pairs, or compared with it.
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numeric>
 #include <span>
 
@@ -26,7 +25,6 @@ constexpr std::array<CornerOrder, 12> kTetrahedronOrders{{{0, 1, 2, 3},
                                                           {3, 1, 0, 2},
                                                           {3, 2, 1, 0}}};
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
 // Axes of one direction written twice differ by rounding only.
 constexpr double kSameDirection = 1e-12;
 

@@ -12,9 +12,9 @@ namespace {
 
 // Mid nodes farther from the midpoint than this share of the edge are refused.
 constexpr double kMidTolerance = 1e-6;
-constexpr double kFar = std::numeric_limits<double>::infinity();
 // An axis whose squared length is farther from 1 was not written as a unit vector.
 constexpr double kUnitTolerance = 1e-9;
+
 bool check_corners(const MeshData& mesh, const std::string& tag, Checks& checks) {
   const auto k = static_cast<std::size_t>(mesh.nodes_per_element);
   std::vector<char> used(mesh.points.size(), 0);

@@ -1,7 +1,6 @@
 // The facets and edges of a mesh, and other small things that the checks share.
 #include <algorithm>
 #include <charconv>
-#include <limits>
 #include <utility>
 
 #include "core/verify/support.hpp"
@@ -16,8 +15,6 @@ bool VerifyReport::ok() const {
 
 namespace internal {
 namespace {
-
-constexpr double kFar = std::numeric_limits<double>::infinity();
 
 // Facets of elements by their corners, in the order that runs counter-clockwise seen from outside;
 // facet i lies opposite corner i.

@@ -9,7 +9,7 @@ namespace {
 
 // Rounding of an element's measure against its bound.
 constexpr double kMeasureRounding = 1e-9;
-constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kNone = std::numeric_limits<double>::infinity();  // no bound
 
 class RegionChecker {
  public:

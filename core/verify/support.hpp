@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <string>
@@ -16,6 +17,8 @@
 #include "core/verify/verify_mesh.hpp"
 
 namespace symcell::internal {
+
+inline constexpr double kFar = std::numeric_limits<double>::infinity();  // farther than anything
 
 [[nodiscard]] inline Point2 planar(const Point3& p) {
   return {p.x, p.y};

@@ -18,7 +18,7 @@ using Point = Cdt::Point;
 using VertexHandle = Cdt::Vertex_handle;
 using FaceHandle = Cdt::Face_handle;
 
-constexpr std::size_t kCheckInterval = 4096;  // points or copies of segments put in
+constexpr std::size_t kCheckEvery = 4096;  // points or copies of segments put in
 
 // Handles of the copies of orbit o: n from first[o], one for the centre.
 struct Handles {
@@ -73,7 +73,7 @@ Result<Handles> insert_vertices(const SymmetricPslg& pslg,
   handles.handle.resize(points.size());
   FaceHandle hint;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i % kCheckInterval == 0) {
+    if (i % kCheckEvery == 0) {
       SYMCELL_TRY(context.check());
     }
     const VertexHandle v = full.cdt.insert(points[order[i]], hint);
@@ -100,7 +100,7 @@ Result<void> insert_segments(const SymmetricPslg& pslg,
   std::size_t done = 0;
   for (std::size_t s = 0; s < pslg.segments.size(); ++s) {
     for (std::int32_t k = 0; k < pslg.fold; ++k) {
-      if (++done % kCheckInterval == 0) {
+      if (++done % kCheckEvery == 0) {
         SYMCELL_TRY(context.check());
       }
       const VertexHandle a = handles(turned(pslg.segments[s].a, k));

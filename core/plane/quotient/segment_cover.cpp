@@ -4,13 +4,10 @@
 #include <cmath>
 #include <string>
 
+#include "core/geometry/tolerances.hpp"
+
 namespace symcell::plane {
-namespace {
-
-// Sums of rounded lengths and areas, relative to the sum and to the longest length.
-constexpr double kRoundingRel = 1e-9;
-
-}  // namespace
+namespace {}  // namespace
 
 SegmentCover measure_segment_cover(const QuotientTriangulation& mesh) {
   SegmentCover cover;
@@ -45,7 +42,7 @@ SegmentCover measure_segment_cover(const QuotientTriangulation& mesh) {
 
 Result<void> compare_segment_covers(const SegmentCover& wanted, const SegmentCover& found) {
   const auto differ = [](double a, double b, double scale) {
-    return std::abs(a - b) > kRoundingRel * (std::abs(b) + scale);
+    return std::abs(a - b) > kSumRoundingRel * (std::abs(b) + scale);
   };
   double longest = 0;
   for (const auto& s : wanted.segments) longest = std::max({longest, s.one_sided, s.two_sided});

@@ -2,14 +2,11 @@
 
 #include <string>
 
+#include "core/geometry/tolerances.hpp"
 #include "core/plane/quotient/lifted_predicates.hpp"
 
 namespace symcell::plane {
 namespace {
-
-// A tie left alone when its points were inserted may look certain with other roundings: each is off
-// by less than the bound, so by less than three bounds in all.
-constexpr double kTieSlack = 4;
 
 Result<void> broken(const char* layer, TriangleId t, std::uint32_t j, const char* what) {
   return fail(ErrorCode::kInternal,

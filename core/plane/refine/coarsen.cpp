@@ -63,11 +63,11 @@ Result<void> Coarsener::run() {
   if (points == 0) return {};
   const int rounds = static_cast<int>(
       std::clamp<std::size_t>(kVertexVisits / points, 1, static_cast<std::size_t>(kMaxRounds)));
-  constexpr std::size_t kCheckInterval = 64;  // vertices: each is tried for merge and removal
+  constexpr std::size_t kCheckEvery = 64;  // vertices: each is tried for merge and removal
   for (int round = 0; round < rounds; ++round) {
     std::size_t gained = 0;
     for (std::size_t i = 0; i < order.size(); ++i) {
-      if (i % kCheckInterval == 0) {
+      if (i % kCheckEvery == 0) {
         const auto elements = static_cast<std::uint64_t>(mesh_.triangle_count());
         context_.report(Phase::kImprove, 0.7 + 0.2 * (round + 1.0) / rounds, elements, 1);
         SYMCELL_TRY(context_.check(elements));

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry/tolerances.hpp"
 #include "core/plane/quotient/star.hpp"
 
 namespace symcell::plane {
 namespace {
 
-constexpr double kRadian = std::numbers::pi / 180.0;  // a degree
 // Two points on shells of one acute vertex count as equally far from it within this ratio; shells
 // themselves are a factor of two apart.
 constexpr double kShellRatio = 1e-3;
@@ -25,10 +25,10 @@ Criteria::Criteria(const QuotientTriangulation& mesh,
                    const std::vector<SubdomainOrbit>& subdomains,
                    const MeshOptions& options) {
   const double bound = options.min_angle_deg > 0 ? options.min_angle_deg + kAngleMarginDeg : 0;
-  goal_angle_ = bound * kRadian;
+  goal_angle_ = bound * kRadiansADegree;
   cos2_goal_ = bound > 0 ? std::cos(goal_angle_) * std::cos(goal_angle_) : 2.0;
-  cos_lens_ = std::cos(2 * std::max(goal_angle_, kLeastLensDeg * kRadian));
-  shell_angle_ = std::max(kShellAngleDeg * kRadian, kShellFactor * goal_angle_);
+  cos_lens_ = std::cos(2 * std::max(goal_angle_, kLeastLensDeg * kRadiansADegree));
+  shell_angle_ = std::max(kShellAngleDeg * kRadiansADegree, kShellFactor * goal_angle_);
   // The square of a length just inside the bound must not round to one outside.
   max_edge2_ = options.max_edge * options.max_edge * (1 - 1e-12);
   has_size_bound_ = options.max_edge < kInfinity;

@@ -18,7 +18,7 @@ constexpr double kCascadeRatio = 1e-5;
 constexpr double kResolution = 1e-12;
 // A vertex is relocated at most this often while refining: area bounds could make it wander.
 constexpr std::uint8_t kMaxMoves = 12;
-constexpr std::uint64_t kTickInterval = 256;  // steps: some cost nothing, some an insertion
+constexpr std::uint64_t kCheckEvery = 256;  // steps: some cost nothing, some an insertion
 // Off-centres lie where the new triangle's angle is a little above the bound [Shewchuk, Triangle].
 constexpr double kOffCentreFactor = 0.475;
 // Samples lie within this many shortest edges of the off-centre.
@@ -56,7 +56,7 @@ Refiner::Refiner(Editor& editor,
 }
 
 Result<void> Refiner::tick() {
-  if (++steps_ % kTickInterval != 0) return {};
+  if (++steps_ % kCheckEvery != 0) return {};
   const auto elements = static_cast<std::uint64_t>(mesh_.triangle_count());
   const double waiting = static_cast<double>(queue_.size());
   const double quality = std::max(0.0, 1.0 - waiting / static_cast<double>(elements));

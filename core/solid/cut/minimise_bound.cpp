@@ -12,7 +12,7 @@ namespace {
 // units.
 constexpr TetId kNoTet = std::numeric_limits<TetId>::max();
 constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
-constexpr std::uint32_t kStepsBetweenChecks = 8192;  // a step discharges one tetrahedron
+constexpr std::uint32_t kCheckEvery = 8192;  // a step discharges one tetrahedron
 
 // flow(h) is the slope of the cost of face h at its jump, antisymmetric; excess(t), the sum over
 // its faces, is the slope of the total cost in x_t. Tetrahedra with a negative excess have units to
@@ -109,7 +109,7 @@ class BoundMinimiser {
       batch.swap(active_);
       active_.clear();
       for (const TetId t : batch) {
-        if (++steps % kStepsBetweenChecks == 0) {
+        if (++steps % kCheckEvery == 0) {
           SYMCELL_TRY(context_.check());
         }
         relabels += discharge(t);

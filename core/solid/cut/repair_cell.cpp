@@ -14,10 +14,10 @@
 namespace symcell::solid {
 namespace {
 
-constexpr int kRounds = 16;                         // of pieces and vertices in turn
-constexpr std::int32_t kLayers = 4;                 // by which a ball grows round a star
-constexpr std::size_t kMaxBall = 4000;              // tetrahedra
-constexpr std::size_t kVerticesBetweenChecks = 64;  // each has a star searched
+constexpr int kRounds = 16;              // of pieces and vertices in turn
+constexpr std::int32_t kLayers = 4;      // by which a ball grows round a star
+constexpr std::size_t kMaxBall = 4000;   // tetrahedra
+constexpr std::size_t kCheckEvery = 64;  // each has a star searched
 
 struct Move {
   TetId t;
@@ -53,7 +53,7 @@ class CellRepairer {
     const std::size_t loose = find_loose_pieces(cell_).size();
     std::size_t steps = 0;
     for (const VertexId v : bound_vertices(cell_)) {
-      if (++steps % kVerticesBetweenChecks == 0) {
+      if (++steps % kCheckEvery == 0) {
         SYMCELL_TRY(context_.check());
       }
       if (chain_at(v) == 0) continue;
@@ -115,7 +115,7 @@ class CellRepairer {
     std::size_t steps = 0;
     bool left = false;
     while (!queue.empty()) {
-      if (++steps % kVerticesBetweenChecks == 0) {
+      if (++steps % kCheckEvery == 0) {
         SYMCELL_TRY(context_.check());
       }
       const VertexId v = queue.front();

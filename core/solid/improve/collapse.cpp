@@ -9,8 +9,6 @@
 namespace symcell::solid {
 namespace {
 
-// Stars this large are at hubs of the input.
-constexpr std::size_t kMaxStar = 120;
 // Where the tetrahedra that are left would fill more than this share of the volume bound on
 // average, one of them would break it: not worth a closer look.
 constexpr double kMaxFilling = 0.92;

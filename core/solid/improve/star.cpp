@@ -1,16 +1,9 @@
 // The star of a vertex, unrolled round its copy 0, and how good it would be elsewhere.
 #include <algorithm>
-#include <limits>
 
 #include "core/solid/improve/surgery.hpp"
 
 namespace symcell::solid {
-namespace {
-
-// Stars this large are at hubs of the input; working there is slow and seldom helps. Below 256.
-constexpr std::size_t kMaxStar = 120;
-
-}  // namespace
 
 void Surgery::load_star_tet(TetCopy c, VertexId v, StarTet& s) const {
   s.region = mesh_.tet(c.t).region;
@@ -63,8 +56,7 @@ bool Surgery::load_star(VertexId v) {
 
 const Surgery::Worth& Surgery::star_worth() {
   if (!star_judged_) {
-    constexpr double kAny = std::numeric_limits<double>::infinity();
-    star_worth_ = star_worth_at(mesh_.point(star_vertex_), {-kAny, kAny, kAny});
+    star_worth_ = star_worth_at(mesh_.point(star_vertex_), {-kFar, kFar, kFar});
     star_judged_ = true;
   }
   return star_worth_;

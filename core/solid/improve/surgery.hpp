@@ -89,6 +89,8 @@ class Surgery {
   static constexpr double kFar = std::numeric_limits<double>::infinity();  // no limit
   // Beyond any excess of a radius-edge ratio that is not of a flat tetrahedron.
   static constexpr double kOversized = 1e12;
+  // Stars this large are at hubs of the input; working there is slow and seldom helps. Below 256.
+  static constexpr std::size_t kMaxStar = 120;
   // Least sine that a lenient operation may leave: 3 degrees.
   static constexpr double kOpeningShape = 0.05;
 

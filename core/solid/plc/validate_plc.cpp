@@ -9,6 +9,7 @@
 #include "core/geometry/limits.hpp"
 #include "core/geometry/point_tree.hpp"
 #include "core/geometry/resolution.hpp"
+#include "core/geometry/tolerances.hpp"
 #include "core/model/describe.hpp"
 #include "core/solid/plc/conform_plc.hpp"
 #include "core/solid/plc/plc_intersections.hpp"

@@ -9,9 +9,6 @@
 
 namespace symcell::solid {
 
-// How far a facet's vertices may lie off its plane, as a share of the model's diameter.
-inline constexpr double kPlanarityToleranceRel = 1e-7;
-
 struct ValidPlc {
   PlcComplex complex;
   PlcCells cells;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/tolerances.hpp"
 #include "core/solid/quotient/lifted_predicates.hpp"
 
 namespace symcell::solid {
@@ -17,8 +18,6 @@ namespace {
 constexpr double kAngleSlack = 0.01;
 // Facets are planar up to the rounding of their vertices, so volumes agree up to that only.
 constexpr double kVolumeSlack = 1e-7;
-// As in validate.cpp: a tie left alone may look certain with other roundings.
-constexpr double kTieSlack = 4;
 
 class Checker {
  public:

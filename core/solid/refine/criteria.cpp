@@ -7,10 +7,11 @@
 #include <numbers>
 #include <utility>
 
+#include "core/geometry/tolerances.hpp"
+
 namespace symcell::solid {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;  // a degree
 // A bound is kept to this relative precision, so that rounding in a checker does not break it.
 constexpr double kBoundSafety = 1e-9;
 // Angles are compared with their limit to this many radians.
@@ -99,7 +100,7 @@ void Criteria::find_sharp_segments(const QuotientTetrahedralization& mesh) {
           sum = 0;
         }
       }
-      if (smallest < kSharpDeg * kRadians - kAngleSlack) {
+      if (smallest < kSharpDeg * kRadiansADegree - kAngleSlack) {
         sharp_segments_[static_cast<std::size_t>(segment)] = 1;
       }
     }
@@ -170,7 +171,7 @@ void Criteria::find_sharp_vertices(const QuotientTetrahedralization& mesh, bool 
             at = go.first;
             sum += go.second;
           }
-          if (fan[at].segment && sum < kSharpDeg * kRadians - kAngleSlack) {
+          if (fan[at].segment && sum < kSharpDeg * kRadiansADegree - kAngleSlack) {
             acute_vertices_[i] = 1;
           }
         }

@@ -24,8 +24,6 @@ constexpr std::size_t kNamed = 5;        // edges or pairs told in a message
 constexpr std::size_t kListed = 100;     // triangles listed in an error
 constexpr std::size_t kMostPairs = 200;  // intersecting pairs looked for
 
-// A vertex so near to an open edge, of the diameter, lies on it.
-constexpr double kJunctionRel = 1e-6;
 // Mending slivers that cross each other changes the volume by far less.
 constexpr double kMendedVolumeRel = 1e-4;
 

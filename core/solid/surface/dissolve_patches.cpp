@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "core/geometry/indexed_surface.hpp"
+#include "core/solid/surface/editable_surface.hpp"
 
 namespace symcell::solid {
 namespace {
 
-// Normals that differ by less than 35 degrees: the surface goes on smoothly.
-constexpr double kSmoothCosine = 0.82;
-constexpr double kSmoothShare = 0.5;  // of the boundary: with more a patch is of a curved part
+// Of the boundary, across which the surface goes on smoothly: with more a patch is of a curved part.
+constexpr double kSmoothShare = 0.5;
 // Of the boundary: a side to a neighbour that counts.
 constexpr double kSignificantShare = 0.2;
 
@@ -102,7 +102,7 @@ Result<Survey> survey(const QuotientSurface& surface) {
           rotations.rotate(surface.normals[n.triangle], rotations.reduce(n.exponent));
       const double cosine = dot(surface.normals[t], normal);
       f.boundary += side;
-      if (cosine < kSmoothCosine) continue;
+      if (cosine < kCreaseCosine) continue;
       f.smooth += side;
       result.sides.push_back({patch, other, side, std::acos(std::min(cosine, 1.0))});
     }

@@ -7,13 +7,6 @@
 #include "core/geometry/indexed_surface.hpp"
 
 namespace symcell::solid {
-namespace {
-
-// Edges with a larger angle between the normals (35 degrees) are creases, and so are corners where
-// a crease turns by more.
-constexpr double kCreaseCosine = 0.82;
-
-}  // namespace
 
 Result<EditableSurface> EditableSurface::create(QuotientSurface& surface) {
   const auto neighbours = find_neighbours(surface);

@@ -13,6 +13,9 @@
 
 namespace symcell::solid {
 
+// Edges with a larger angle between the normals (35 degrees) are creases, and so are corners where
+// a crease turns by more; elsewhere the surface goes on smoothly.
+inline constexpr double kCreaseCosine = 0.82;
 inline constexpr std::uint8_t kCreaseSide = 1;  // bits of a mark
 inline constexpr std::uint8_t kCutSide = 2;     // on a side at the cut
 
