@@ -13,6 +13,14 @@ std::string to_text(double value, Format... format) {
   return {buffer.data(), end.ptr};
 }
 
+std::string two_vertices(std::int64_t first, std::int64_t second) {
+  return "vertices " + std::to_string(first) + " and " + std::to_string(second);
+}
+
+std::string advice(const char* users) {
+  return std::string("; keep one and let the ") + users + " refer to it";
+}
+
 }  // namespace
 
 std::string describe_number(double value) {
@@ -45,6 +53,22 @@ std::string describe_segment(std::span<const Point2> vertices,
     return std::to_string(v) + " " + describe_point(vertices[static_cast<std::size_t>(v)]);
   };
   return "segment " + std::to_string(segment) + " (vertices " + end(s.a) + " to " + end(s.b) + ")";
+}
+
+std::string describe_duplicates(std::int64_t first,
+                                std::int64_t second,
+                                const std::string& place,
+                                const char* users) {
+  return two_vertices(first, second) + " are both at " + place + advice(users);
+}
+
+std::string describe_near_duplicates(std::int64_t first,
+                                     std::int64_t second,
+                                     const std::string& place,
+                                     double distance,
+                                     const char* users) {
+  return two_vertices(first, second) + " at " + place + " are only " + describe_rounded(distance) +
+         " apart, which is rounding in a model of this size" + advice(users);
 }
 
 }  // namespace symcell

@@ -1,4 +1,4 @@
-// How error messages name the entities of a PSLG.
+// How error messages name numbers, points and the entities of a PSLG.
 #pragma once
 
 #include <cstdint>
@@ -23,5 +23,17 @@ namespace symcell {
 [[nodiscard]] std::string describe_segment(std::span<const Point2> vertices,
                                            std::span<const PslgSegment> segments,
                                            std::int64_t segment);
+// "vertices 3 and 4 are both at (1.5, 2); keep one and let the segments refer to it"; the second for
+// vertices that are nearer to each other than the model's coordinates resolve.
+// `place`: of the second vertex.  `users`: "segments" or "facets".
+[[nodiscard]] std::string describe_duplicates(std::int64_t first,
+                                              std::int64_t second,
+                                              const std::string& place,
+                                              const char* users);
+[[nodiscard]] std::string describe_near_duplicates(std::int64_t first,
+                                                   std::int64_t second,
+                                                   const std::string& place,
+                                                   double distance,
+                                                   const char* users);
 
 }  // namespace symcell

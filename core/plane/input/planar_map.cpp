@@ -131,10 +131,8 @@ class Sweep {
     const std::int32_t v = events_[i];
     if (vertices_[at(u)] != vertices_[at(v)]) return {};
     return fail(ErrorCode::kDuplicateVertices,
-                "vertices " + std::to_string(u) + " and " + std::to_string(v) + " are both at " +
-                    describe_point(vertices_[at(v)]) +
-                    "; keep one and let the segments refer to it",
-                {u, v}, "/vertices/" + std::to_string(v));
+                describe_duplicates(u, v, describe_point(vertices_[at(v)]), "segments"), {u, v},
+                "/vertices/" + std::to_string(v));
   }
 
   void locate_query(std::int32_t query) {

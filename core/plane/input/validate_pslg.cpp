@@ -132,9 +132,8 @@ Result<void> check_not_collinear(const Pslg& pslg) {
               "all vertices lie on one line; a plane model needs area");
 }
 
-// Equal coordinates come before collinearity in the report, so they are looked for on their own.
-// Vertices that differ by less than coordinates of this size can tell are one: as two they would be
-// features that no check of a mesh can tell from faults.
+// Vertices nearer to each other than coordinates of this size resolve are one: as two they would be
+// features that no check of a mesh can distinguish from faults.
 Result<void> check_near_duplicates(const Pslg& pslg) {
   const double resolution = resolution_of(pslg.vertices);
   if (!(resolution > 0)) return {};
@@ -145,11 +144,8 @@ Result<void> check_near_duplicates(const Pslg& pslg) {
     const auto id = static_cast<std::int32_t>(i);
     if (near >= 0) {
       return fail(ErrorCode::kDuplicateVertices,
-                  "vertices " + std::to_string(near) + " and " + std::to_string(id) + " at " +
-                      describe_point(p) + " are only " +
-                      describe_rounded(distance(p, pslg.vertices[at(near)])) +
-                      " apart, which is rounding in a model of this size; keep one and let the "
-                      "segments refer to it",
+                  describe_near_duplicates(near, id, describe_point(p),
+                                           distance(p, pslg.vertices[at(near)]), "segments"),
                   {near, id}, pointer_to("vertices", i));
     }
     grid.insert(p, id);
@@ -157,6 +153,7 @@ Result<void> check_near_duplicates(const Pslg& pslg) {
   return {};
 }
 
+// Equal coordinates come before collinearity in the report, so they are looked for on their own.
 Result<void> check_duplicates(const Pslg& pslg) {
   std::vector<std::int32_t> order(pslg.vertices.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::int32_t>(i);
@@ -171,10 +168,8 @@ Result<void> check_duplicates(const Pslg& pslg) {
     const std::int32_t v = order[i];
     if (pslg.vertices[at(u)] != pslg.vertices[at(v)]) continue;
     return fail(ErrorCode::kDuplicateVertices,
-                "vertices " + std::to_string(u) + " and " + std::to_string(v) + " are both at " +
-                    describe_point(pslg.vertices[at(v)]) +
-                    "; keep one and let the segments refer to it",
-                {u, v}, pointer_to("vertices", at(v)));
+                describe_duplicates(u, v, describe_point(pslg.vertices[at(v)]), "segments"), {u, v},
+                pointer_to("vertices", at(v)));
   }
   return check_near_duplicates(pslg);
 }

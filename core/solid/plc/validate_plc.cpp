@@ -138,16 +138,15 @@ Result<void> check_duplicates(const Plc& plc) {
   for (std::size_t i = 1; i < order.size(); ++i) {
     if (plc.vertices[at(order[i - 1])] != plc.vertices[at(order[i])]) continue;
     return fail(ErrorCode::kDuplicateVertices,
-                "vertices " + std::to_string(order[i - 1]) + " and " + std::to_string(order[i]) +
-                    " are both at " + describe_point(plc.vertices[at(order[i])]) +
-                    "; keep one and let the facets refer to it",
+                describe_duplicates(order[i - 1], order[i],
+                                    describe_point(plc.vertices[at(order[i])]), "facets"),
                 {order[i - 1], order[i]}, pointer_to("vertices", at(order[i])));
   }
   return {};
 }
 
-// Vertices that differ by less than coordinates of this size can tell are one: as two they would be
-// features that no check of a mesh can tell from faults.
+// Vertices nearer to each other than coordinates of this size resolve are one: as two they would be
+// features that no check of a mesh can distinguish from faults.
 Result<void> check_near_duplicates(const Plc& plc, double diameter) {
   double magnitude = 0;
   for (const Point3 p : plc.vertices) {
@@ -165,11 +164,8 @@ Result<void> check_near_duplicates(const Plc& plc, double diameter) {
     });
     if (near < 0) continue;
     return fail(ErrorCode::kDuplicateVertices,
-                "vertices " + std::to_string(near) + " and " + std::to_string(id) + " at " +
-                    describe_point(p) + " are only " +
-                    describe_rounded(distance(p, plc.vertices[at(near)])) +
-                    " apart, which is rounding in a model of this size; keep one and let the "
-                    "facets refer to it",
+                describe_near_duplicates(near, id, describe_point(p),
+                                         distance(p, plc.vertices[at(near)]), "facets"),
                 {near, id}, pointer_to("vertices", i));
   }
   return {};
