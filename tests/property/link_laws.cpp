@@ -4,19 +4,15 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <numeric>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "core/cell/full_mesh.hpp"
 #include "core/geometry/point_tree.hpp"
+#include "tests/property/link_fans.hpp"
 
 namespace symcell {
 namespace {
-
-constexpr double kPlaceTolerance = 1e-9;  // of the model's diameter
-constexpr double kHanging = 1e-10;        // likewise: how near a node lies in a face
 
 using Tet = std::array<std::int64_t, 4>;
 using Edge = std::pair<std::int64_t, std::int64_t>;
@@ -31,45 +27,6 @@ struct Links {
   std::vector<std::int64_t> nodes;
   std::vector<Edge> edges;
   std::vector<Face> outer;
-};
-
-// Elements as they stand at nodes or edges, one entry a place, joined where they share a face.
-template <class Place>
-class Fans {
- public:
-  void add(const Place& place, std::size_t element) { places_.emplace_back(place, element); }
-  void finish() {
-    std::sort(places_.begin(), places_.end());
-    up_.resize(places_.size());
-    std::iota(up_.begin(), up_.end(), std::size_t{0});
-  }
-  void join(const Place& place, std::size_t a, std::size_t b) {
-    up_[root(find(place, a))] = root(find(place, b));
-  }
-  // Places with more than one fan.
-  [[nodiscard]] std::vector<Place> parted() {
-    std::vector<Place> result;
-    for (std::size_t i = 1; i < places_.size(); ++i) {
-      const bool same = places_[i].first == places_[i - 1].first;
-      if (same && root(i) != root(i - 1)) result.push_back(places_[i].first);
-    }
-    result.erase(std::unique(result.begin(), result.end()), result.end());
-    return result;
-  }
-
- private:
-  [[nodiscard]] std::size_t find(const Place& place, std::size_t element) const {
-    const std::pair<Place, std::size_t> wanted(place, element);
-    return static_cast<std::size_t>(std::lower_bound(places_.begin(), places_.end(), wanted) -
-                                    places_.begin());
-  }
-  [[nodiscard]] std::size_t root(std::size_t i) {
-    while (up_[i] != i) i = up_[i] = up_[up_[i]];
-    return i;
-  }
-
-  std::vector<std::pair<Place, std::size_t>> places_;
-  std::vector<std::size_t> up_;
 };
 
 Links links_of(const std::vector<Tet>& tets) {
@@ -159,18 +116,13 @@ class LinkLaws {
  private:
   template <class... Parts>
   void broken(const Parts&... parts) {
-    std::ostringstream text;
-    text.precision(12);
-    (text << ... << parts);
-    broken_.push_back(text.str());
+    broken_.push_back(law_text(parts...));
   }
   [[nodiscard]] Point3 at(std::int64_t node) const { return points_[idx(node)]; }
-  [[nodiscard]] double tolerance() const { return kPlaceTolerance * model_.diameter; }
+  [[nodiscard]] double tolerance() const { return kPinchTolerance * model_.diameter; }
   [[nodiscard]] std::string place(std::int64_t node) const {
-    std::ostringstream text;
-    text.precision(12);
-    text << node << " at (" << at(node).x << ", " << at(node).y << ", " << at(node).z << ")";
-    return text.str();
+    const Point3 p = at(node);
+    return law_text(node, " at (", p.x, ", ", p.y, ", ", p.z, ")");
   }
 
   // An edge may run over the ends of several pieces of one straight pinch.

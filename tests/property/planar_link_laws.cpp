@@ -4,20 +4,16 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <numeric>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "core/cell/full_mesh.hpp"
 #include "core/geometry/point_tree.hpp"
+#include "tests/property/link_fans.hpp"
 #include "tests/property/restored_mesh.hpp"
 
 namespace symcell {
 namespace {
-
-constexpr double kPlaceTolerance = 1e-9;  // of the model's diameter
-constexpr double kHanging = 1e-10;        // likewise: how near a node lies in an edge
 
 using Triangles = std::vector<std::array<std::int32_t, 3>>;
 using Edge = std::array<std::int64_t, 2>;
@@ -39,30 +35,17 @@ std::map<Edge, std::vector<std::size_t>> triangles_at_edges(const Triangles& tri
 
 // Nodes whose triangles do not hang together.
 std::set<std::int64_t> parted_nodes(const Triangles& triangles) {
-  std::vector<std::size_t> up(3 * triangles.size());  // per corner
-  std::iota(up.begin(), up.end(), std::size_t{0});
-  const auto root = [&](std::size_t i) {
-    while (up[i] != i) i = up[i] = up[up[i]];
-    return i;
-  };
-  const auto corner = [&](std::size_t t, std::int64_t node) {
-    const auto& c = triangles[t];
-    return 3 * t + idx(std::find(c.begin(), c.end(), node) - c.begin());
-  };
+  Fans<std::int64_t> fans;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (const std::int64_t node : triangles[t]) fans.add(node, t);
+  }
+  fans.finish();
   for (const auto& [edge, both] : triangles_at_edges(triangles)) {
     if (both.size() != 2) continue;
-    for (const std::int64_t node : edge) {
-      up[root(corner(both[0], node))] = root(corner(both[1], node));
-    }
+    for (const std::int64_t node : edge) fans.join(node, both[0], both[1]);
   }
-  std::map<std::int64_t, std::size_t> fan;
-  std::set<std::int64_t> result;
-  for (std::size_t i = 0; i < up.size(); ++i) {
-    const std::int64_t node = triangles[i / 3][i % 3];
-    const auto [first, fresh] = fan.try_emplace(node, root(i));
-    if (!fresh && first->second != root(i)) result.insert(node);
-  }
-  return result;
+  const std::vector<std::int64_t> parted = fans.parted();
+  return {parted.begin(), parted.end()};
 }
 
 class PlanarLinkLaws {
@@ -84,15 +67,12 @@ class PlanarLinkLaws {
  private:
   template <class... Parts>
   void broken(const Parts&... parts) {
-    std::ostringstream text;
-    text.precision(12);
-    (text << ... << parts);
-    broken_.push_back(text.str());
+    broken_.push_back(law_text(parts...));
   }
   [[nodiscard]] Point2 at(std::int64_t node) const { return mesh_.points[idx(node)]; }
   [[nodiscard]] bool pinched(std::int64_t node) const {
     return std::any_of(model_.pinches.begin(), model_.pinches.end(), [&](Point2 p) {
-      return distance(p, at(node)) <= kPlaceTolerance * model_.diameter;
+      return distance(p, at(node)) <= kPinchTolerance * model_.diameter;
     });
   }
 

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <map>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "core/cell/full_mesh.hpp"
@@ -14,6 +13,7 @@
 #include "core/geometry/predicates_3.hpp"
 #include "core/geometry/tet_measures.hpp"
 #include "core/solid/plc/validate_plc.hpp"
+#include "tests/property/link_fans.hpp"
 #include "tests/property/link_laws.hpp"
 
 namespace symcell {
@@ -65,10 +65,7 @@ class SolidLaws {
  private:
   template <class... Parts>
   void broken(const Parts&... parts) {
-    std::ostringstream text;
-    text.precision(12);
-    (text << ... << parts);
-    if (broken_.size() < 20) broken_.push_back(text.str());
+    if (broken_.size() < 20) broken_.push_back(law_text(parts...));
   }
   [[nodiscard]] double tolerance() const { return kPlaceTolerance * model_.diameter; }
   [[nodiscard]] Point3 at(std::int64_t node) const { return points_[idx(node)]; }
