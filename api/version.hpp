@@ -1,4 +1,4 @@
-// The program's version, as `symcell --version` and the statistics tell it.
+// The program's version, as `symcell --version` and the statistics report it.
 #pragma once
 
 #include <string_view>

@@ -15,7 +15,7 @@ namespace symcell {
                                              const MeshOptions& options,
                                              ExecutionContext& context);
 
-// `symcell inspect`: validates the model and tells what symmetrising would find; meshes nothing.
+// `symcell inspect`: validates the model and reports what symmetrising would find; meshes nothing.
 // Errors: model codes, limits.
 [[nodiscard]] Result<Inspection> inspect_model(const Model& model,
                                                const MeshOptions& options,

@@ -2,7 +2,7 @@
 //
 // Numbers are written by to_chars: shortest form that reads back as the same bits, deaf to the
 // locale. After the sink has refused a piece all further output is dropped; long loops look at
-// ok() now and then, and finish() tells.
+// ok() now and then, and finish() reports.
 #pragma once
 
 #include <charconv>

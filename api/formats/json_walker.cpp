@@ -207,7 +207,7 @@ std::string_view JsonWalker::non_finite_name(std::size_t position) const {
   const std::size_t offset = position - begin;
   for (const std::string_view name : {"NaN", "nan", "Infinity", "inf", "Inf"}) {
     const std::size_t at = around.find(name);
-    // The error is told one or more letters into the token.
+    // The error is reported one or more letters into the token.
     if (at != std::string_view::npos && at < offset && offset <= at + name.size()) return name;
   }
   return {};

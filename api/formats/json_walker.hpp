@@ -24,7 +24,7 @@ struct JsonPlace {
   const char* wanted;  // in words, for "... belongs here, not ..."
 };
 
-// Whether a member of an object was there; `seen` as the walker tells it: a bit a place's id.
+// Whether a member of an object was there; `seen` as the walker reports it: a bit a place's id.
 [[nodiscard]] inline bool has(std::uint32_t seen, const JsonPlace& place) {
   return (seen >> place.id & 1U) != 0;
 }

@@ -32,7 +32,7 @@ struct ModelFormatInfo {
 [[nodiscard]] const ModelFormatInfo& model_format_info(ModelFormat format);
 [[nodiscard]] std::optional<ModelFormat> model_format_of_name(std::string_view name);
 
-// What a file name's ending (also before .gz) or a media type promises; nullopt: tell from the
+// What a file name's ending (also before .gz) or a media type promises; nullopt: see the
 // content. The two kinds of JSON and of .poly are told apart by the content only: here they are
 // kPslgJson and kPoly.
 [[nodiscard]] std::optional<ModelFormat> model_format_from_name(std::string_view file_name);

@@ -133,7 +133,7 @@ Result<Model> read_model(std::string_view bytes,
     found = *dimension == 3 ? ModelFormat::kTetgenPoly : ModelFormat::kPoly;
   }
   auto model = read_as(*found, bytes);
-  // Nothing but the sense they make tells TetGen's two forms apart.
+  // Nothing but the sense they make distinguishes TetGen's two forms.
   if (!model && !format && *found == ModelFormat::kTetgenPoly) {
     if (auto other = read_as(ModelFormat::kSmesh, bytes)) {
       found = ModelFormat::kSmesh;

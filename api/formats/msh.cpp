@@ -306,7 +306,7 @@ class MshWriter {
   const SymmetryCellMesh& cell_;
   ByteWriter& out_;
   std::int32_t dimension_;
-  bool bounds_ = false;  // the file tells lower and higher bound
+  bool bounds_ = false;  // the file names lower and higher bound
   bool varied_regions_ = false;
   bool varied_markers_ = false;
   Groups regions_;                     // of elements, or (element, sector) pairs

@@ -24,7 +24,7 @@ namespace symcell {
 [[nodiscard]] std::string write_plc_json(const Plc& plc);
 
 // Which kind of model a JSON text says it holds: by "type", or by "facets" where that comes first.
-// A text that does not tell, or is none, is taken for planar.
+// A text that does not say, or is none, is taken for planar.
 [[nodiscard]] ModelKind json_model_kind(std::string_view bytes);
 
 }  // namespace symcell

@@ -34,7 +34,7 @@ struct PlyProperty {
 
 struct PlyElement {
   std::string name;
-  std::uint64_t count = 0;  // as told, not to be believed
+  std::uint64_t count = 0;  // as given, not to be trusted
   std::vector<PlyProperty> properties;
 };
 

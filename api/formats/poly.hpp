@@ -1,6 +1,6 @@
 // Triangle's `.poly`: vertices, segments, holes and regions in one text file.
 //
-// Comments (`#` to the end of the line), numbering from 0 or 1 (told by the first vertex's number),
+// Comments (`#` to the end of the line), numbering from 0 or 1 (as the first vertex's number),
 // vertex attributes and markers (read over), segment markers, regions with attribute and area (an
 // area <= 0 is no bound). Vertices in a separate `.node` file are not followed.
 #pragma once

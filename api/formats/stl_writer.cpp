@@ -9,14 +9,14 @@
 namespace symcell::internal {
 namespace {
 
-// Must not begin with "solid", which is how the ASCII form is told.
+// Must not begin with "solid", which is how the ASCII form is recognised.
 constexpr std::string_view kTitle = "symcell: boundary of a mesh, binary STL";
 constexpr std::size_t kTitleBytes = 80;
 constexpr std::uint64_t kMostFaces = std::numeric_limits<std::uint32_t>::max();
 
 using Triangle = std::array<Point3, 3>;
 
-// Zero for a degenerate triangle, which readers take as "not told".
+// Zero for a degenerate triangle, which readers take as "not given".
 Point3 unit_normal(const Triangle& t) {
   const Point3 n = cross(t[1] - t[0], t[2] - t[0]);
   const double size = length(n);

@@ -47,7 +47,7 @@ class TetgenReader {
                 std::move(pointer));
   }
 
-  // A count is believed only as far as the bytes left can bear it, two of them an entry at least.
+  // A count is trusted only as far as the bytes left can bear it, two of them an entry at least.
   [[nodiscard]] Result<std::size_t> as_count(std::string_view token,
                                              const std::string& what) const {
     const std::optional<std::int64_t> count = parse_integer(token);

@@ -1,6 +1,6 @@
 // TetGen's `.poly` and `.smesh`: vertices, facets, volume holes and regions in one text file.
 //
-// Comments (`#` to the end of the line), numbering from 0 or 1 (told by the first vertex's number),
+// Comments (`#` to the end of the line), numbering from 0 or 1 (as the first vertex's number),
 // vertex attributes and markers (read over), facet markers, corners of a polygon over several
 // lines, regions with attribute and volume (a volume <= 0 is no bound). A `.smesh` has one polygon
 // a facet. Vertices in a separate `.node` file are not followed.

@@ -11,7 +11,7 @@ std::string_view without_plus(std::string_view token) {
   return token;
 }
 
-// from_chars tells overflow and underflow by the same code. The decimal exponent decides: of
+// from_chars reports overflow and underflow by the same code. The decimal exponent decides: of
 // numbers out of range, those with a value below 1 are tiny.
 bool is_tiny(std::string_view token) {
   if (token.starts_with('-')) token.remove_prefix(1);

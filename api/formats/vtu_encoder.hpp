@@ -1,6 +1,6 @@
 // Arrays of a VTU file in one of its encodings: ASCII, or the appended section raw or compressed.
 //
-// The file's head tells each array's offset before any of the data, and the compressed sizes stand
+// The file's head gives each array's offset before any of the data, and the compressed sizes stand
 // before the blocks. So compressed arrays are made twice: once to learn the sizes and once to write
 // them, unless all blocks fit the cache. Memory is bounded either way.
 #pragma once

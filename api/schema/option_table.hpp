@@ -1,4 +1,4 @@
-// The one table of meshing options: name, help, how a value is checked and set, how it is told.
+// The one table of meshing options: name, help, how a value is checked, set and written.
 // Internal to api/schema; callers use options.hpp.
 #pragma once
 

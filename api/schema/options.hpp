@@ -29,7 +29,7 @@ struct OptionInfo {
 
 [[nodiscard]] std::span<const OptionInfo> mesh_option_table();
 
-// Options are parsed before the kind of the model may be known: options_for, below, tells whether
+// Options are parsed before the kind of the model may be known: options_for, below, checks whether
 // they fit it. From a JSON object; unknown names are refused with kBadOption and a pointer
 // "/options/<name>".
 [[nodiscard]] Result<MeshOptions> options_from_json(const nlohmann::json& object);
@@ -39,7 +39,7 @@ struct OptionInfo {
 [[nodiscard]] Result<MeshOptions> options_from_texts(
     const std::vector<std::pair<std::string, std::string>>& texts);
 
-// True if `name` (with `_`) is an option of meshing: lets callers tell options from other
+// True if `name` (with `_`) is an option of meshing: lets callers separate options from other
 // query parameters.
 [[nodiscard]] bool is_mesh_option(std::string_view name);
 

@@ -1,4 +1,4 @@
-// Whether options fit a kind of model, told once the kind is known.
+// Whether options fit a kind of model, checked once the kind is known.
 #include <cmath>
 #include <string>
 

@@ -79,7 +79,7 @@ Json inspected(const PslgInspection& inspection) {
   return json;
 }
 
-// Null: what the kind of model has not, or what meshing alone would tell.
+// Null: what the kind of model has not, or what meshing alone would find.
 Json inspected(const SolidInspection& inspection) {
   const bool surface = inspection.kind == "surface";
   Json json;

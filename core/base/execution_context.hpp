@@ -1,5 +1,5 @@
 // What a long call looks at every few hundred steps: a cancel flag, a deadline, an element budget;
-// and where it tells its progress.
+// and where it reports its progress.
 //
 // Promises: a call that finds the context exhausted returns kCancelled, kTimeLimit or kElementLimit
 // (cancel wins over the deadline, the deadline over the budget) and hands out no partial mesh.

@@ -1,4 +1,4 @@
-// What `symcell inspect` tells of a model, without meshing it.
+// What `symcell inspect` reports of a model, without meshing it.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ struct SolidInspection {
   Point3 axis_origin;
   Point3 axis_direction{0, 0, 1};
   double symmetry_error_rel = 0;
-  double volume = 0;        // of the meshed domain (PLC: 0 if it cannot be told without meshing)
+  double volume = 0;        // of the meshed domain (PLC: 0 if it is not known without meshing)
   double surface_area = 0;  // surfaces only
   double diameter = 0;
   Point3 bbox_min;

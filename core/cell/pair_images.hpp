@@ -1,4 +1,4 @@
-// Pairs of nodes that no facet of the bounds tells.
+// Pairs of nodes that no facet of the bounds names.
 #pragma once
 
 #include "core/cell/symmetry_cell_mesh.hpp"

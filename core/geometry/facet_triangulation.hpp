@@ -1,4 +1,4 @@
-// The constrained Delaunay triangulation of one planar facet in space, with what lies inside told
+// The constrained Delaunay triangulation of one planar facet in space, with what lies inside found
 // by flooding.
 //
 // Points are projected along the coordinate axis nearest to the facet's normal, which rounds

@@ -2,7 +2,7 @@
 // exactly if a rotation maps one onto the other.
 //
 // A face is three corners (vertex, exponent). Its reference is its non-axis corner with the
-// smallest vertex id; the others' exponents are told relative to it. Where that id occurs twice the
+// smallest vertex id; the others' exponents are relative to it. Where that id occurs twice the
 // choice with the smaller name wins. Source: [paper] sec. 5.1 (symmetric faces), here as keys.
 #pragma once
 

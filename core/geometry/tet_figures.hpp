@@ -1,4 +1,4 @@
-// Figures of tetrahedra as statistics and checks tell them, gathered over many.
+// Figures of tetrahedra as statistics and checks report them, gathered over many.
 //
 // Angles are compared by their cotangents, which fall from +inf at 0 to -inf at 180 degrees: no
 // arcus functions in the loop, and no loss near flat angles as with cosines.

@@ -38,7 +38,7 @@ class TriangleTree {
     return nearest(p, reach, last);
   }
   // The same for a point near one that was looked for before: the search begins at the place that
-  // `last` (-1 at first) tells and goes outwards; what it finds does not depend on it.
+  // `last` (-1 at first) names and goes outwards; what it finds does not depend on it.
   [[nodiscard]] Hit nearest(Point3 p, double reach, std::int32_t& last) const;
   // Any triangle no farther than `reach`.
   [[nodiscard]] bool within(Point3 p, double reach) const {

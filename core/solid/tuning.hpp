@@ -22,8 +22,8 @@ struct StartLimits {
   std::size_t enough_compared = 7'000;
   double alike = 1.001;
   double later_cost = 0.05;  // what a sector costs more than the one before, for the same triangles
-  double most_costlier =
-      2.5;  // sectors that promise a mesh larger than the best by this are left out
+  // Sectors from which a mesh larger than the best one by this factor is expected are left out.
+  double most_costlier = 2.5;
 
   // Meshing. Meshes from different cuts, and where bad tetrahedra are left.
   int meshes = 4;

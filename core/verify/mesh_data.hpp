@@ -1,4 +1,4 @@
-// A mesh as a file tells it: plain coordinates and indices, nothing taken for granted. What
+// A mesh as a file gives it: plain coordinates and indices, nothing taken for granted. What
 // verify_mesh looks at; meshes of our own making are SymmetryCellMesh.
 #pragma once
 

@@ -175,7 +175,7 @@ class BoundFinder {
       const std::size_t to = image_[g];
       if (image_[to] == g) mutual_.push_back(g);
     }
-    // Of two that go to each other one is called lower; if all do, no bound was told at all.
+    // Of two that go to each other one is called lower; if all do, no bound was given at all.
     if (mutual_.size() == lower_.size()) return;
     std::erase_if(lower_, [&](std::size_t g) { return image_[image_[g]] == g && image_[g] < g; });
   }

@@ -86,7 +86,7 @@ class Flaws {
     if (count_++ == 0) first_ = describe();
   }
   [[nodiscard]] bool none() const { return count_ == 0; }
-  // Fails if there is a flaw, and tells it; else tells `fine`.
+  // Fails if there is a flaw, and reports it; else reports `fine`.
   bool report(Checks& checks, std::string name, std::string fine = {}) const;
 
  private:
@@ -168,7 +168,7 @@ void check_links(const FacetedMesh& mesh,
 // full.hanging_nodes
 void check_hanging_nodes(const FacetedMesh& full, double tolerance, Checks& checks);
 
-// What is told, not checked: the share of free facets that are locally Delaunay, and the quality.
+// Reported, not checked: the share of free facets that are locally Delaunay, and the quality.
 void tell_delaunay(const FacetedMesh& full, const std::vector<char>& constrained, Checks& checks);
 void tell_quality(const MeshData& mesh, Checks& checks);
 

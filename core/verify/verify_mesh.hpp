@@ -15,8 +15,8 @@
 //   *.vertex_links          elements at a node hang together by facets
 //   *.edge_links            solids: likewise round an edge; both exempt where the model itself
 //                           pinches, which the program computes from the model alone
-//   cell.quality            angles and radius-edge ratio (told only)
-//   full.delaunay           share of free facets that are locally Delaunay (told only)
+//   cell.quality            angles and radius-edge ratio (reported only)
+//   full.delaunay           share of free facets that are locally Delaunay (reported only)
 //   full.hanging_nodes      no node lies in a boundary facet that it is no corner of
 //
 // The symmetry:

@@ -1,4 +1,4 @@
-// How the commands tell an error: on standard error, the first line says what, where and how to
+// How the commands report an error: on standard error, the first line says what, where and how to
 // mend; or the problem document of the HTTP interface.
 #pragma once
 

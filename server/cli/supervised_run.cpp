@@ -37,7 +37,7 @@ constexpr std::chrono::milliseconds kCancelGrace{1000};
 constexpr std::chrono::milliseconds kTimeGrace{2000};
 constexpr int kTickMs = 20;
 
-// A context that parent and child see: the one cancels, the other tells its progress.
+// A context that parent and child see: the one cancels, the other reports its progress.
 static_assert(std::atomic<double>::is_always_lock_free && std::atomic<Phase>::is_always_lock_free,
               "only such atomics work between processes");
 

@@ -18,7 +18,7 @@ struct Call {
   const httplib::ContentReader* body = nullptr;
   Exchange& exchange;
   std::string id;                    // what stands for {id} in the route
-  std::string_view error_code = {};  // of the library, if the answer tells one
+  std::string_view error_code = {};  // of the library, if the answer has one
 
   [[nodiscard]] std::string header(const char* name) const {
     return request.get_header_value(name);

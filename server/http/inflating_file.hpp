@@ -32,7 +32,7 @@ class InflatingFile {
   FileWriter file_;
   std::size_t max_bytes_;
   Fault fault_ = Fault::kNone;
-  std::string head_;  // until there are enough bytes to tell gzip from anything else
+  std::string head_;  // until there are enough bytes to recognise gzip
   bool decided_ = false;
   std::unique_ptr<GzipInflater> inflater_;
 };

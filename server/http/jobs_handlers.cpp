@@ -125,7 +125,7 @@ void list_jobs(Call& call, ServiceContext& context) {
   JobFilter filter;
   if (!parse_filter(call, filter)) return;
   const std::size_t limit = filter.limit;
-  ++filter.limit;  // one more tells whether there is another page
+  ++filter.limit;  // one more shows whether there is another page
   auto jobs = context.jobs.list(filter);
   nlohmann::ordered_json document;
   document["jobs"] = nlohmann::ordered_json::array();

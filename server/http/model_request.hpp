@@ -21,7 +21,7 @@ struct ModelRequest {
   MeshOptions options;
 };
 
-// Reads the body and parses model and options, so that whatever is malformed is told at once.
+// Reads the body and parses model and options, so that whatever is malformed is reported at once.
 // Answers the call itself and returns nullopt where the request is not acceptable.
 [[nodiscard]] std::optional<ModelRequest> receive_model_request(Call& call,
                                                                 ServiceContext& context,

@@ -33,7 +33,7 @@ class JobEngine {
   // context.cancel().
   [[nodiscard]] virtual Result<void> run(const EngineJob& job, ExecutionContext& context) = 0;
 
-  // Reads a model and forgets it again: what is malformed is told before there is a job.
+  // Reads a model and forgets it again: what is malformed is reported before there is a job.
   // `promised`: by name or media type.  Result: what the content turned out to be.  Errors: those
   // of reading, and limits.
   [[nodiscard]] virtual Result<ModelFormat> recognise(const std::filesystem::path& model,

@@ -55,8 +55,8 @@ class JobRunner {
   void enqueue_recovered(std::string id);
 
   enum class CancelResult : std::uint8_t {
-    kDequeued,  // was waiting: the caller tells the store
-    kStopping,  // runs: its worker tells the store within a second
+    kDequeued,  // was waiting: the caller updates the store
+    kStopping,  // runs: its worker updates the store within a second
     kNotHere,   // neither waits nor runs
   };
   CancelResult cancel(std::string_view id);

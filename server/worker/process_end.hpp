@@ -32,7 +32,7 @@ enum class EndKind : std::uint8_t {
 [[nodiscard]] std::string_view end_kind_name(EndKind kind);
 [[nodiscard]] EndKind kind_of(const ProcessEnd& end, const WorkerLimits& limits);
 
-// The error of the request. `progress`: as last told. `time_limit_s`: of the request.
+// The error of the request. `progress`: as last reported. `time_limit_s`: of the request.
 [[nodiscard]] Error error_of(const ProcessEnd& end,
                              const WorkerLimits& limits,
                              double time_limit_s,

@@ -175,7 +175,7 @@ class Worker {
   std::mutex mutex_;  // guards work_ and outcome_
   std::condition_variable changed_;
   std::shared_ptr<Work> work_;            // null: idle
-  std::optional<WorkerMessage> outcome_;  // of work_, until it is told
+  std::optional<WorkerMessage> outcome_;  // of work_, until it is sent
 };
 
 }  // namespace

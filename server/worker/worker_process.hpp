@@ -41,7 +41,7 @@ class WorkerProcess {
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
-  // Requires: usable(). `context` is looked at for a cancel and told the progress.
+  // Requires: usable(). `context` is looked at for a cancel and given the progress.
   [[nodiscard]] TaskOutcome run(const RequestMessage& request, ExecutionContext& context);
 
   // It lives and waits for a request.

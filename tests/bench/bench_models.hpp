@@ -10,7 +10,7 @@ namespace symcell::bench {
 // A disc with a bore and `fold` round holes.
 [[nodiscard]] Pslg flange_of(std::int32_t fold);
 
-// Options under which the full mesh has about `triangles` triangles; the mesh tells how many it is.
+// Options under which the full mesh has about `triangles` triangles; the mesh shows how many it is.
 // `plain`: as MeshOptions::plain, which takes more triangles for the same bound.
 [[nodiscard]] MeshOptions sized_options(const Pslg& model,
                                         std::int32_t fold,

@@ -31,7 +31,7 @@ def main():
                                   "--full", full, "--stats", stats, "--time-limit", "60"], 120)
         if error:
             return Outcome(FAILED, error)
-        # Random corners are often narrower than the bound, so edges across them are excused.
+        # Random corners are often narrower than the bound, so edges across them are exempt.
         wrong = random_runs.faults([cell, "--full", full, "--model", model, "--stats", stats,
                                     "--min-angle", angle, "--exempt-seditious", "--delaunay",
                                     "strict"], 300)

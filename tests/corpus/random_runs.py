@@ -1,9 +1,9 @@
 """Many random models, each meshed by the real binary and judged by the independent checker beside the
 tree, in parallel: shared by random_check.py (planar) and random_solid_check.py.
 
-Every model is told by its kind and seed alone. A run ends with counts: valid; invalid, where the
+Every model is determined by its kind and seed alone. A run ends with counts: valid; invalid, where the
 binary ended well and the checker found a fault; failed, by error code. Each seed that is not valid is
-told in a line of its own.
+reported in a line of its own.
 """
 import collections
 import concurrent.futures

@@ -7,8 +7,8 @@ Kinds: bodies (prisms, frustums, blocks, ...), layers (stacks of prisms: ribs, p
 partitions) and tabs (bodies with tabs and pockets on their sides) as facets, PLC JSON; surfaces and
 tab_surfaces, layers and tabs as triangles, STL.
 
-The checker excuses from the radius-edge bound what touches a small angle of the input only; a mesh
-that has others and says so in its statistics (near_small_feature) is told, and holds.
+The checker exempts from the radius-edge bound what touches a small angle of the input only; a mesh
+that has others and says so in its statistics (near_small_feature) is reported, and holds.
 Exit 77 (skipped) where the checker or its packages are absent.
 """
 import argparse

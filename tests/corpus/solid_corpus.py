@@ -9,7 +9,7 @@ meshes' tetrahedra, n * cell, each against what TetGen 1.5 needs for the same mo
 the geometric means over the models whose count does not depend on the tessellation.
 
 Real files that are dirty may be refused. Elements near small features that do not touch them, which
-the checker does not excuse and the statistics count, are told and hold. Exit code 77: skipped.
+the checker does not exempt and the statistics count, are reported and hold. Exit code 77: skipped.
 """
 
 import argparse

@@ -5,7 +5,7 @@
 
 Models of the corpus beside the source tree are meshed and their VTU files damaged in one way at a
 time. Wherever meshcheck.py fails, verify must fail; wherever both meshes are as the mesher made
-them, both must agree. Damage that neither sees is told. Exit code 77: skipped.
+them, both must agree. Damage that neither sees is reported. Exit code 77: skipped.
 """
 
 import argparse
@@ -330,7 +330,7 @@ NEEDS_PAIRS = {"pair lost", "pairs swapped", "all pairs lost"}
 
 # ------------------------------------------------------------------------------------------- running
 def verdicts(symcell, meshcheck, folder, model):
-    """(whether meshcheck.py passes, whether verify does, what both told)."""
+    """(whether meshcheck.py passes, whether verify does, what both reported)."""
     files = [str(folder / "cell.vtu"), "--full", str(folder / "full.vtu"), "--model", str(model)]
     try:
         theirs = meshcheck.verify(meshcheck.parser().parse_args(files)).failed()

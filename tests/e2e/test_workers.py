@@ -54,7 +54,7 @@ class WorkersTest(unittest.TestCase):
         return workers_of(self.server.process.pid)
 
     def busy_worker(self, but=()):
-        """The worker that took a job last, as the log tells, once it is none of `but`."""
+        """The worker that took a job last, as the log shows, once it is none of `but`."""
         def find():
             took = [e["pid"] for e in self.server.log_events() if e["event"] == "worker_took"]
             return took[-1] if took and took[-1] not in but else None
@@ -220,7 +220,7 @@ class WorkersTest(unittest.TestCase):
     def test_progress_comes_from_the_worker(self):
         self.start()
         job_id = self.running(long_options())
-        until(lambda: self.server.job(job_id)["progress"].get("elements", 0) > 1000, "elements are told")
+        until(lambda: self.server.job(job_id)["progress"].get("elements", 0) > 1000, "elements are reported")
         self.assertEqual(self.server.job(job_id)["progress"]["phase"], "refine")
 
 

@@ -37,7 +37,7 @@ inline void require_good_report(const VerifyReport& report) {
   require(report.ok(), "a mesh passes its checks");
 }
 
-// Whether the pairs of the cell tell all of its nodes that are one in the full mesh. Where a model
+// Whether the pairs of the cell name all of its nodes that are one in the full mesh. Where a model
 // touches itself they can be two steps apart, and then only the full mesh as written has them once.
 inline bool tells_all_images(const SymmetryCellMesh& mesh) {
   std::map<std::int32_t, std::set<std::int32_t>> exponents;
@@ -66,7 +66,7 @@ inline bool mesh_and_check(const Model& model,
   context.set_time_limit(seconds);
   context.set_max_elements(elements);
   const auto outcome = mesh_model(model, options, context);
-  // With SYMCELL_FUZZ_TELL every outcome is told.
+  // With SYMCELL_FUZZ_TELL every outcome is printed.
   const bool tell = std::getenv("SYMCELL_FUZZ_TELL") != nullptr;
   if (!outcome) {
     const Error& error = outcome.error();
@@ -87,7 +87,7 @@ inline bool mesh_and_check(const Model& model,
   const MeshData cell = written_and_read(outcome->mesh, MeshPart::kCell);
   const MeshData full = written_and_read(outcome->mesh, MeshPart::kFull);
   require_good_report(verify_mesh(cell, &full, &model, checks));
-  // Where sectors may differ in their regions, the cell does not tell them all.
+  // Where sectors may differ in their regions, the cell does not hold them all.
   if (!options.ignore_markers && tells_all_images(outcome->mesh)) {
     require_good_report(verify_mesh(cell, nullptr, &model, checks));
   }

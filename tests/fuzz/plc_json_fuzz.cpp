@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::require_good_message(model.error());
     return 0;
   }
-  fuzz::require(!other_kind, "what can be read is told as such");
+  fuzz::require(!other_kind, "what can be read is recognised as such");
   const auto back = read_plc_json(write_plc_json(*model));
   fuzz::require(back.has_value(), "what was written can be read");
   fuzz::require(back->vertices == model->vertices && back->facets == model->facets &&

@@ -1,4 +1,4 @@
-// The laws of how the elements of a solid's mesh hang together, told from the nodes' numbers and
+// The laws of how the elements of a solid's mesh hang together, found from the nodes' numbers and
 // places alone: what a crack breaks, whatever it looks like.
 //
 //   links     elements round every node and edge hang together by faces, in the full mesh where

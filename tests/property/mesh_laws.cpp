@@ -415,7 +415,7 @@ class LawChecker {
     std::uint64_t counted = 0;
     for (const ExemptCount& e : outcome_.statistics.exempt) counted += e.elements;
     if (counted < surely_below || counted > perhaps_below) {
-      complain("angles: ", counted, " exempt elements told, ", surely_below, " found");
+      complain("angles: ", counted, " exempt elements reported, ", surely_below, " found");
     }
   }
 
@@ -524,8 +524,8 @@ class LawChecker {
     }
     if (std::abs(s.cell.min_angle_deg - least) > 1e-9 ||
         std::abs(s.cell.measure - sum) > 1e-12 * area_) {
-      complain("statistics: smallest angle ", least, " told as ", s.cell.min_angle_deg, ", area ",
-               sum, " told as ", s.cell.measure);
+      complain("statistics: smallest angle ", least, " reported as ", s.cell.min_angle_deg,
+               ", area ", sum, " reported as ", s.cell.measure);
     }
   }
 

@@ -1,4 +1,4 @@
-// The laws that every mesh of a valid symmetric model keeps, told from the model, the options and
+// The laws that every mesh of a valid symmetric model keeps, found from the model, the options and
 // the restored full mesh alone: nothing of the quotient is looked at.
 //
 //   cell       elements exactly positive; lower_to_higher takes each node to its image

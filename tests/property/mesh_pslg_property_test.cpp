@@ -117,7 +117,7 @@ TEST(MeshPslgProperty, TurnedAndShiftedModelsKeepTheLaws) {
 }
 
 // Rings, gears and flanges are full of cocircular vertices, in every sector and about the centre:
-// ties everywhere. Their areas are told by inspection, which makes no triangles.
+// ties everywhere. Their areas are reported by inspection, which makes no triangles.
 TEST(MeshPslgProperty, RegularModelsKeepTheLaws) {
   for (const std::int32_t n : {3, 4, 5, 6, 8, 12, 30, 48}) {
     const Pslg models[] = {

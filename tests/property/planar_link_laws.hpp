@@ -1,4 +1,4 @@
-// The laws of how the triangles of a mesh hang together, told from the nodes' numbers and places
+// The laws of how the triangles of a mesh hang together, found from the nodes' numbers and places
 // alone; of solids: link_laws.hpp.
 //
 //   links     triangles round every node hang together by edges, in the full mesh where the model

@@ -1,4 +1,4 @@
-// One random meshing task, told by its seed alone: a symmetric model and options for it.
+// One random meshing task, determined by its seed alone: a symmetric model and options for it.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// One random meshing task of a solid, told by its seed alone: a model and options for it.
+// One random meshing task of a solid, determined by its seed alone: a model and options for it.
 #pragma once
 
 #include <cstdint>

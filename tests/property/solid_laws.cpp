@@ -127,7 +127,7 @@ class SolidLaws {
         return;
       }
       if (uses.size() == 1 && !told.contains(key)) {
-        broken("boundary: the outer face of element ", uses[0].first, " is not told");
+        broken("boundary: the outer face of element ", uses[0].first, " is not reported");
         return;
       }
       if (uses.size() == 2 && regions_[uses[0].first] != regions_[uses[1].first] &&
@@ -186,7 +186,7 @@ class SolidLaws {
     if (found.size() != expected.size()) broken("regions: their number is ", found.size());
     topology_ = {model_.diameter, model_.pinches, test::boundary_topology(*valid)};
     if (model_.boundary && *model_.boundary != *topology_.boundary) {
-      broken("model: its boundary is not as the generator tells it");
+      broken("model: its boundary is not as the generator states it");
     }
     find_meshed_facets(*valid);
     check_vertices(valid->complex);
@@ -377,7 +377,7 @@ class SolidLaws {
     }
     if (bad > exempt) {
       broken("quality: ", bad, " elements are above the radius-edge bound, ", exempt,
-             " are told as exempt");
+             " are reported as exempt");
     }
     // Where the axis is inside and sectors are narrow, whole cells are.
     const bool narrow = model_.axis_inside && cell_.fold > 6;
@@ -390,7 +390,7 @@ class SolidLaws {
     }
   }
 
-  // If it is told to be so, every face that is on no facet is locally Delaunay.
+  // If it is reported to be so, every face that is on no facet is locally Delaunay.
   void check_delaunay() {
     if (!outcome_.statistics.delaunay) return;
     const std::set<FaceKey> facets = [&] {
@@ -412,8 +412,8 @@ class SolidLaws {
         const TetMeasures m = measure_tet(at(v[0]), at(v[1]), at(v[2]), at(v[3]));
         const double inside = squared_distance(at(found->second.second), m.centre) / m.radius2;
         if (inside >= 1 - kSphereTolerance) continue;
-        broken("delaunay: told, and element ", found->second.first, " reaches into the sphere of ",
-               t);
+        broken("delaunay: reported, and element ", found->second.first,
+               " reaches into the sphere of ", t);
         return;
       }
     }

@@ -1,13 +1,13 @@
-// The laws that every mesh of a random symmetric PLC keeps, told from the model, the options and
+// The laws that every mesh of a random symmetric PLC keeps, found from the model, the options and
 // the restored full mesh alone: nothing of the quotient is looked at.
 //
 //   cell       elements exactly positive; lower_to_higher takes each node to its image
 //   full mesh  a face has at most two elements, from opposite sides; no coincident nodes; the
 //              model's volume
-//   model      vertices are nodes, segments chains of edges; faces at the mesh's rim are told as
+//   model      vertices are nodes, segments chains of edges; faces at the mesh's rim are given as
 //              boundary; boundary faces lie on facets of their marker and fill each; every region
 //              has its volume
-//   quality    radius-edge ratio but for elements told as exempt; volume and edge bounds for all
+//   quality    radius-edge ratio but for elements reported as exempt; volume and edge bounds for all
 //   figures    statistics say what the mesh is
 //   links      and rim, topology, hanging: link_laws.hpp
 #pragma once

@@ -15,7 +15,7 @@
 namespace symcell {
 namespace {
 
-// Of the tetrahedra, over the ratio with no excuse: coarse surfaces of long triangles that a narrow
+// Of the tetrahedra, over the ratio and not exempt: coarse surfaces of long triangles that a narrow
 // tolerance does not let be changed have corners that no good tetrahedron fits into.
 constexpr double kMeasureTolerance = 1e-9;  // relative
 constexpr double kMostBadShare = 0.03;

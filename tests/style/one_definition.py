@@ -10,7 +10,7 @@ So every qualified name with external linkage is defined in one file of core, ap
 
 Read are the sources, not the objects: a type need not leave a symbol there. Looked at are
 definitions in namespaces, and types in classes, but nothing in unnamed namespaces or function
-bodies, nothing static; functions are told apart by their parameters' types as written. Names that
+bodies, nothing static; functions are distinguished by their parameters' types as written. Names that
 each program has its own of (`main`) are left out.
 """
 

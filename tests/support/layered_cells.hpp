@@ -1,6 +1,6 @@
 // A solid of stacked prisms: the cells of a grid, filled or not layer by layer. Boxes of cells are
 // added and cut at random, so ribs, tabs, teeth, spokes, pockets, through holes, islands and
-// cavities arise by themselves, and what faces them is told exactly.
+// cavities arise by themselves, and what faces them is known exactly.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The topology of a model's boundary, as generators tell it and as models show it: laws hold meshes
+// The topology of a model's boundary, as generators know it and as models show it: laws hold meshes
 // against it.
 #pragma once
 

@@ -52,7 +52,7 @@ class SurfaceMaker {
   bool chance(double p) { return random_.uniform() < p; }
   using Side = std::pair<std::int32_t, std::int32_t>;
 
-  // Whether faces are one facet is told by chance in every copy for itself.
+  // Whether faces are one facet is decided by chance in every copy for itself.
   void choose_outlines() {
     constexpr double kMerges[] = {1, 1, 0.8, 0};
     const double merges = kMerges[random_.next() % 4];

@@ -1,4 +1,4 @@
-// Random solids of stacked prisms (layered_cells.hpp), told by their seed alone, on any axis, of
+// Random solids of stacked prisms (layered_cells.hpp), determined by their seed alone, on any axis, of
 // any size: facets with several holes, islands in holes, facets that are not convex with material
 // beyond the gap, coplanar neighbours with and without a segment between them, edges that end
 // inside others, thin webs, tabs, ribs, spokes, pockets, cavities, partitions.
@@ -18,7 +18,7 @@ struct RandomLayersOptions {
   std::optional<std::int32_t> fold;  // nullopt: random, 1 among them
   bool pinches = true;               // of PLCs: a few models touch themselves in edges or corners
   bool loose = true;                 // partitions and seams that may end anywhere within material
-  bool touching = true;              // edges that end inside others: corners not told twice
+  bool touching = true;              // edges that end inside others: corners not given twice
   bool tabs = false;                 // bodies with tabs and pockets on their sides; folds up to 12
 };
 

@@ -1,4 +1,4 @@
-// Random solid models with a known symmetry, told by their seed alone: prisms and frustums with
+// Random solid models with a known symmetry, determined by their seed alone: prisms and frustums with
 // bores, layers, cavities, partitions and baffles, antiprisms, bipyramids, rings of loose blocks;
 // on any axis, of any size, blunt or acute.
 #pragma once
@@ -31,7 +31,7 @@ struct RandomPlc {
   // Every segment bounds two facets, and what they enclose is all meshed.
   bool plain_surface = true;
   Pinches pinches;
-  std::optional<BoundaryTopology> boundary;  // where the generator tells it
+  std::optional<BoundaryTopology> boundary;  // where the generator knows it
 };
 
 [[nodiscard]] RandomPlc make_random_plc(std::uint64_t seed, const RandomPlcOptions& options = {});

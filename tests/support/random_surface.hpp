@@ -19,7 +19,7 @@ struct RandomSurface {
   double volume = 0;      // of the tessellation
   double area = 0;
   bool flat = false;  // of few planes: the tessellation keeps the symmetry exactly
-  std::optional<BoundaryTopology> boundary;  // where the generator tells it
+  std::optional<BoundaryTopology> boundary;  // where the generator knows it
 };
 
 [[nodiscard]] RandomSurface make_random_surface(std::uint64_t seed);

@@ -1,4 +1,4 @@
-// What every symmetrised PSLG must hold, told by independent means.
+// What every symmetrised PSLG must hold, found by independent means.
 #pragma once
 
 #include "core/model/pslg.hpp"

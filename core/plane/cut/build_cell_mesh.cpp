@@ -107,7 +107,7 @@ class CellMeshBuilder {
   }
 
   // The copy of the parent segment on which a point of subsegment s lies. The frame of a subsegment
-  // relative to its parent is not kept while refining: the nearest copy tells.
+  // relative to its parent is not kept while refining: the nearest copy decides.
   [[nodiscard]] std::int32_t copy_of_parent(std::int32_t parent, Point2 x) const {
     const SymmetricSegment& seg = pslg_.segments[static_cast<std::size_t>(parent)];
     std::int32_t best = 0;

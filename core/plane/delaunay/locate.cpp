@@ -6,7 +6,7 @@ namespace symcell::plane {
 namespace {
 
 // A walk in a Delaunay triangulation ends by itself; round subsegments and with lifted points it
-// need not, so it is cut off well above the length of honest walks.
+// need not, so it is cut off well above the length of ordinary walks.
 constexpr int kMaxSteps = 20'000;
 
 }  // namespace

@@ -220,7 +220,7 @@ class QuotientBuilder {
       }
       tri.face = orbit_of_subdomain_[static_cast<std::size_t>(f->info().subdomain)];
       handles_.push_back(f);
-      // From here on `merged` tells the triangle of a representative face.
+      // From here on `merged` holds the triangle of a representative face.
       slot_of_.emplace_back(f, t);
     }
     std::sort(slot_of_.begin(), slot_of_.end());

@@ -8,7 +8,7 @@
 namespace symcell::plane {
 
 // Checks, in this order: size, finite coordinates and seeds, range, segment indices, zero-length
-// segments, duplicate vertices (nearer than resolution_of tells apart), all collinear, overlapping and crossing
+// segments, duplicate vertices (nearer than resolution_of), all collinear, overlapping and crossing
 // segments and vertices inside segments (exact), seeds (each hole and region seed inside a bounded
 // face of the PSLG, none on a segment, no face with both a hole and a region seed or two regions
 // that differ).  The first failure is returned with the ids at fault and a JSON pointer.

@@ -163,7 +163,7 @@ class QuotientTriangulation {
   std::uint32_t new_epoch();
 
   // Rewrites triangle slots in breadth-first order, without gaps: neighbours come to lie near one
-  // another in memory, and the order does not tell how the mesh was made.
+  // another in memory, and the order does not show how the mesh was made.
   void compact();
 
   // Transactions: between begin and commit or roll_back every change of triangles, vertices and

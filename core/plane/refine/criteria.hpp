@@ -98,7 +98,7 @@ class Criteria {
     OrbitVertex b;
   };
   void set_segment_ends(VertexId v, const SegmentEnds& ends);
-  // Takes over what another object was told of the same mesh.
+  // Takes over what another object knows of the same mesh.
   void adopt_segment_ends(const Criteria& other) { ends_ = other.ends_; }
   // For any vertex of a subsegment that runs from it to `other`: the ends of its input segment in
   // the frame in which the vertices are given.

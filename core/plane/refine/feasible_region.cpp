@@ -68,7 +68,7 @@ bool FeasibleRegion::clip(Point2 normal, double offset) {
 }
 
 // Starts with the shortest edge, whose region is the smallest: its wedge, cut off where its disc
-// ends. The rest follows longest first, because long edges keep x away and so tell soonest that
+// ends. The rest follows longest first, because long edges keep x away and so show soonest that
 // nothing is left.
 bool FeasibleRegion::start(const std::vector<StarEdge>& edges, Point2 origin) {
   discs_.clear();

@@ -86,7 +86,7 @@ void FoldDetector::collect_samples() {
   }
 }
 
-// Orders the samples by how few share their distance from the centre: those tell most folds apart.
+// Orders the samples by how few share their distance from the centre: those distinguish most folds.
 // Of very many, keeps half from the front and half from all over.
 void FoldDetector::keep_discriminating_samples() {
   struct Ranked {

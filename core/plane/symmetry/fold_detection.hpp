@@ -66,7 +66,7 @@ class FoldDetector {
   double tolerance_;
   bool centre_given_;
   Point2 centre_;
-  std::vector<Sample> samples_;      // the most telling first
+  std::vector<Sample> samples_;      // the most selective first
   std::int64_t smallest_class_ = 0;  // vertices at the rarest radius
 };
 

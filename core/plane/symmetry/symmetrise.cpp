@@ -161,7 +161,7 @@ class Symmetriser {
 
   // Whether positions that differ by about the tolerance, which is no more than noise unless it was
   // given, would be several vertices of the result and are one of the model: no mesh of such spots
-  // can be told from a wrong one.
+  // can be distinguished from a wrong one.
   [[nodiscard]] bool has_copies_beside_vertices(const SymmetricPslg& pslg) const {
     const RotationTable rotations(pslg.fold);
     std::vector<Point3> lifted, given;

@@ -194,7 +194,7 @@ void CellTopology::look_at_parts(const OrbitVertex* other,
     const LabelledStar::Member& m = star_.members[i];
     for (std::uint32_t f = 0; f < 4; ++f) {
       if (m.neighbours[f] < 0 || (edge && m.corners[f] == *other)) continue;
-      // The lower side tells; for n = 2 either side may.
+      // The lower side decides; for n = 2 either side may.
       const std::int32_t jump = cell_->jump(4 * m.copy.t + f);
       if (jump == -1 || (fold == 2 && jump == 1)) level(reduce(m.label))->witnessed = true;
     }

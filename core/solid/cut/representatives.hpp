@@ -11,7 +11,7 @@
 //   sector jump(h) of the full mesh, relative to the copy in the cell. 0: the face is inside the
 //   cell; +1: on the higher bound; -1: on the lower bound; others: the face is on no bound of a
 //   usable cell. jump(mate of h) = -jump(h). Modulo n the exponents alone give it; the integer
-//   tells lower from higher for n = 2.
+//   distinguishes lower from higher for n = 2.
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 // found by flooding the quotient between facets.
 //
 // A part of the quotient lifts to one or more parts of the full mesh: as many as the greatest
-// common divisor of n and the exponents gathered round its loops. Seeds tell the attributes of
+// common divisor of n and the exponents gathered round its loops. Seeds give the attributes of
 // those.
 #pragma once
 

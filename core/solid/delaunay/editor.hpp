@@ -127,7 +127,7 @@ class Editor {
   void count_move() { ++counters_.moves; }
 
   // Walks from the inside of `from` towards p, in the frame of `from`. Stops in the tetrahedron
-  // that contains p, or at the first subfacet in the way: then `blocked` and `face` tell which.
+  // that contains p, or at the first subfacet in the way: then `blocked` and `face` say which.
   struct Walk {
     TetCopy at;
     std::uint32_t face = 0;

@@ -127,7 +127,7 @@ bool Surgery::merge_in_the_middle(const Collapse& plan, double floor) {
       if (x.orbit == v && x != plan.stays) return false;
     }
   }
-  // Half of what is to be looked at is at hand, and mostly tells.
+  // Half of what is to be looked at is there already, and mostly decides.
   const Moved moved{plan.stays, 0.5 * (mesh_.point(plan.goes.orbit) + mesh_.lift(plan.stays))};
   Worth before = star_worth();
   if (!link_within(plan, moved.place, merge_limits(floor, before))) return false;

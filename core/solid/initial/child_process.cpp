@@ -78,7 +78,7 @@ void limit(int resource, rlim_t most) {
   setrlimit(static_cast<__rlimit_resource>(resource), &r);
 }
 
-// Address space of this process in bytes; 0 if it cannot be told.
+// Address space of this process in bytes; 0 if it is not known.
 rlim_t address_space() {
   std::FILE* file = std::fopen("/proc/self/statm", "r");
   if (file == nullptr) return 0;

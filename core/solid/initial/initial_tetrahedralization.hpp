@@ -6,7 +6,7 @@
 //    boundary kept (TetGen), in another process.
 // 3. S is glued to R S through the index map: S is no constraint any longer, edges on the axis and
 //    on segments of the input are.
-// 4. Outside, holes and voids are removed by flooding the quotient; regions are told by seeds.
+// 4. Outside, holes and voids are removed by flooding the quotient; regions are named by seeds.
 // Source: [paper] sec. 5.1 (FindSymmetryBounds).
 #pragma once
 

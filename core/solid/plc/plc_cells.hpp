@@ -1,5 +1,5 @@
 // The cells into which the facets of a complex divide space, without meshing it: walking round
-// edges joins the sides of facets to shells, rays tell which shells bound one cell.
+// edges joins the sides of facets to shells, rays find which shells bound one cell.
 #pragma once
 
 #include <array>

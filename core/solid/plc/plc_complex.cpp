@@ -97,7 +97,7 @@ bool covers(std::span<const Point3> points, const ComplexFacet& facet, Point3 p)
 
 Point3 facet_normal(const Plc& plc, const PlcFacet& facet) {
   // The sum over the polygon with the largest one is the most precise; a polygon that crosses
-  // itself may have none, then three points far apart tell the plane.
+  // itself may have none, then three points far apart determine the plane.
   Point3 best;
   std::vector<Point3> points;
   for (const std::vector<std::int32_t>& polygon : facet.polygons) {

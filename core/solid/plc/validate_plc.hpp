@@ -15,7 +15,7 @@ struct ValidPlc {
 };
 
 // Checks, in this order: size, finite coordinates and seeds, range, indices, zero-length segments,
-// duplicate vertices (nearer than resolution_of tells apart), facets that are not planar, facets without area,
+// duplicate vertices (nearer than resolution_of), facets that are not planar, facets without area,
 // polygons that cross in their plane, facets and segments that cross or overlap (exact), that
 // something is enclosed, seeds (each in an enclosed cell, none that contradict each other).  The
 // first failure is returned with the ids at fault and a JSON pointer.

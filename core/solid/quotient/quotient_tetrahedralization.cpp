@@ -459,7 +459,7 @@ void QuotientTetrahedralization::round_edge(TetCopy from,
     static_cast<void>(ring(from, a, b, out));
     return;
   }
-  // Of an edge that ends on the axis the other end tells the copy.
+  // Of an edge that ends on the axis the other end determines the copy.
   if (on_axis(a.orbit)) std::swap(a, b);
   std::vector<TetCopy> copies;
   star(a.orbit, copies);

@@ -12,7 +12,7 @@
 // Points for the sake of size are bounded by the volume and the edge length asked for. Beside that,
 // a run has a budget of points for the sake of shape, in proportion to the bad tetrahedra it finds
 // and to the points that size asks for: where acute facets or narrow gaps make every point cause
-// others, it ends long before edges reach their lower bound, and what is bad then is told.
+// others, it ends long before edges reach their lower bound, and what is bad then is reported.
 #pragma once
 
 #include <cstdint>

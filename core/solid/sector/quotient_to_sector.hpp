@@ -1,4 +1,4 @@
-// A quotient surface told as an exact sector: facets, segments and kinds of vertices.
+// A quotient surface written as an exact sector: facets, segments and kinds of vertices.
 #pragma once
 
 #include "core/base/error.hpp"

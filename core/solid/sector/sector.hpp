@@ -64,14 +64,14 @@ struct Sector {
   std::vector<SectorEdge> edges;
   // Edges of the lower cut's curve: sector vertices with exponent 0 (axis vertices included).
   std::vector<std::array<std::int32_t, 2>> lower_cut;
-  // Pieces of the axis inside the closed wedge's material need not be told; points where the axis
+  // Pieces of the axis inside the closed wedge's material need not be given; points where the axis
   // pierces a face are sector vertices.
 
   // Facets are orbits of planar patches; copies of one facet have one index, also across the cut.
   std::vector<std::int32_t> facet_markers;    // per facet
   std::vector<std::int32_t> segment_markers;  // per segment
 
-  // How material is told from void: nesting of closed shells (surfaces: odd depth is material), or
+  // What is material and what void: nesting of closed shells (surfaces: odd depth is material), or
   // seeds (PLCs: everything enclosed but what hole seeds reach).
   bool nesting_decides = false;
   std::vector<Point3> holes;  // local frame, all copies

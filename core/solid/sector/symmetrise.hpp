@@ -1,5 +1,5 @@
 // From a solid model and the user's fold, axis and tolerance to a source of exact sectors, and what
-// `symcell inspect` tells of a solid.
+// `symcell inspect` reports of a solid.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ namespace {
 // Welding tolerances tried in turn, of the diameter: the first that closes the surface. The last is
 // well below the symmetry tolerance, so features a mesh could show survive.
 constexpr std::array<double, 8> kWeldTolerances = {1e-8, 1e-7, 5e-7, 1e-6, 2e-6, 5e-6, 1e-5, 3e-5};
-constexpr std::size_t kNamed = 5;        // edges or pairs told in a message
+constexpr std::size_t kNamed = 5;        // edges or pairs named in a message
 constexpr std::size_t kListed = 100;     // triangles listed in an error
 constexpr std::size_t kMostPairs = 200;  // intersecting pairs looked for
 

@@ -38,7 +38,7 @@ DeviationGuard::DeviationGuard(const QuotientSurface& surface, double most)
       samples_.push_back(p);
     }
     triangles.push_back({first, first + 1, first + 2});
-    if (surface.patch[t] >= 0) continue;  // its corners tell all of a flat part
+    if (surface.patch[t] >= 0) continue;  // its corners bound all of a flat part
     of_triangle_[t].push_back(static_cast<std::int32_t>(samples_.size()));
     samples_.push_back((1.0 / 3) * sum);
   }

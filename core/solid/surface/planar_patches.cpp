@@ -189,7 +189,7 @@ class PatchFinder {
       }
     }
     const double determinant = uu * vv - uv * uv;
-    // Too narrow to tell its slope: keep the normal.
+    // Too narrow for its slope to be known: keep the normal.
     if (determinant > 1e-9 * (uu + vv) * (uu + vv)) {
       const double slope_u = (uh * vv - vh * uv) / determinant;
       const double slope_v = (vh * uu - uh * uv) / determinant;

@@ -22,7 +22,7 @@ constexpr std::int32_t kMostDetected = 400;
 constexpr std::size_t kManyFolds = 24;
 // The first look is about an axis not yet refined.
 constexpr double kRoughTolerances = 6;
-// Principal moments that differ by less tell no axis.
+// Principal moments that differ by less determine no axis.
 constexpr double kSimilarMoments = 0.01;
 // Directions spread over half a sphere where the moments are equal: fewer lie too far apart for the
 // refinement to find the axis, more take their time.
@@ -307,7 +307,7 @@ class Detector {
     result.axis = candidate;
     std::vector<std::int32_t> folds = quick_folds(candidate, kRoughTolerances * tolerance_);
     if (folds.empty()) return result;
-    // The fold that fits best so far tells the axis best; larger ones first among equals.
+    // The fold that fits best so far determines the axis best; larger ones first among equals.
     std::int32_t leader = folds.front();
     double leading = kInfinity;
     for (const std::int32_t n : folds) {
@@ -341,7 +341,7 @@ class Detector {
     const double enough = 4 * tolerance_;
     for (const std::int32_t n : folds) {
       double worst = 0;
-      // Where a few points tell that a turn is out of the question it is the only one to measure.
+      // Where a few points show that a turn is out of the question it is the only one to measure.
       const std::int32_t misfit = misfitting_turn(result.axis, n);
       for (std::int32_t k = misfit > 0 ? misfit : 1; k < n && worst <= enough; ++k) {
         const std::int32_t g = std::gcd(k, n);

@@ -4,7 +4,7 @@
 // a fine polygon passes every fold for a circle. A fold is dropped if another one, neither dividing
 // the other, has less than a quarter of its error, or if its error is far above those of its own
 // divisors; the largest left counts. A shape that any angle fits is a surface of revolution: which
-// fold is meant must then be told.
+// fold is meant must then be given.
 #pragma once
 
 #include <vector>

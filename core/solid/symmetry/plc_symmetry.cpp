@@ -129,7 +129,7 @@ class SymmetrySearch {
     const auto rank = [](const PlcFit& f) {
       return std::tuple(f.accepted ? 0 : 1, f.accepted ? -f.fold : 0, f.error);
     };
-    // Errors that are but rounding do not decide: the first candidate is the most telling.
+    // Errors that are but rounding do not decide: the first candidate is the best one.
     const double noise = resolution_of(complex_.diameter, complex_.magnitude);
     const bool better = !found_ || (fit.accepted == best_.accepted && fit.fold == best_.fold
                                         ? fit.error + noise < best_.error

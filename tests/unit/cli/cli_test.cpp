@@ -133,7 +133,7 @@ TEST_F(Cli, MeshesSolids) {
   }
 }
 
-// Boxes whose triangles face inwards, all of them or every third: turned round, and told.
+// Boxes whose triangles face inwards, all of them or every third: turned round, and reported.
 TEST_F(Cli, RepairsOfSurfacesAreTold) {
   for (const char* name : {"b28_inside_out.stl", "b29_mixed_orientation.stl"}) {
     const Outcome mesh =

@@ -1,4 +1,4 @@
-// The random solids of stacked prisms are what they tell: valid, of their volume and topology, and
+// The random solids of stacked prisms are what they claim: valid, of their volume and topology, and
 // symmetric.
 #include "tests/support/random_layers.hpp"
 

@@ -1,4 +1,4 @@
-// The random planar models cut from grids are what they tell: valid, of their area, symmetric.
+// The random planar models cut from grids are what they claim: valid, of their area, symmetric.
 #include "tests/support/random_planar_cells.hpp"
 
 #include <gtest/gtest.h>

@@ -103,7 +103,7 @@ TEST(OrbitKeys, FaceNamesAreEqualExactlyForCopies) {
       ASSERT_EQ(ka.key == kb.key, congruent(source, a, b));
       if (!(ka.key == kb.key)) continue;
       ++equal;
-      // The references tell the rotation between them.
+      // The references give the rotation between them.
       const std::int32_t e = source.rotations().subtract(kb.reference, ka.reference);
       ASSERT_TRUE(same_set(source.turned(a, e), b));
     }

@@ -58,7 +58,7 @@ std::vector<std::int32_t> orbits_of(const std::vector<std::int32_t>& vertices, s
   return {orbits.begin(), orbits.end()};
 }
 
-// The quotient tells what the whole surface does.
+// The quotient gives what the whole surface does.
 void expect_law(const Surface& s) {
   const BoundaryTopology quotient = s.topology(), full = restored(s).topology();
   EXPECT_EQ(quotient.shells, full.shells);

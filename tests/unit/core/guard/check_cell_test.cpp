@@ -97,7 +97,7 @@ class CheckCell : public testing::TestWithParam<std::size_t> {
  protected:
   using Damage = std::function<bool(SymmetryCellMesh&, Random&)>;
 
-  // Damages copies at random places; false: there is no such place. Found without being told what
+  // Damages copies at random places; false: there is no such place. Found without being given what
   // the boundary is to be.
   void expect_found(const Damage& damage, const std::string& word = "", bool told = false) const {
     for (std::uint64_t seed = 0; seed < 25; ++seed) {

@@ -134,7 +134,7 @@ class PrismSource final : public SectorSource {
   std::vector<std::string> repairs_;
 };
 
-// A prism of twelve sides, told as a 12 / corners-fold one.
+// A prism of twelve sides, given as a 12 / corners-fold one.
 test::PrismSpec prism(std::int32_t fold, double bore = 0) {
   test::PrismSpec spec;
   spec.fold = fold;

@@ -140,7 +140,7 @@ inline std::int64_t euler_characteristic(const IndexedSurface& surface) {
          static_cast<std::int64_t>(surface.triangles.size());
 }
 
-// The invariants that quotient_surface.hpp tells; dead vertices (of no triangle) count for nothing.
+// The invariants that quotient_surface.hpp lists; dead vertices (of no triangle) count for nothing.
 inline void expect_sound(const QuotientSurface& s) {
   EXPECT_TRUE(find_neighbours(s));
   EXPECT_TRUE(is_closed(restored(s)));

@@ -69,7 +69,7 @@ MeshData without(const MeshData& mesh, const std::set<std::size_t>& elements) {
   return result;
 }
 
-// Divides an element at the middle of its facet opposite a corner: what lies beyond is not told.
+// Divides an element at the middle of its facet opposite a corner: what lies beyond is not updated.
 MeshData cracked(const MeshData& mesh, std::size_t element, std::size_t opposite) {
   const auto k = static_cast<std::size_t>(mesh.nodes_per_element);
   std::array<std::int32_t, 4> nodes{};

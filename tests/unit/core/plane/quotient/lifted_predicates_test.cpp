@@ -56,7 +56,7 @@ class LiftedPredicates : public ::testing::TestWithParam<std::int32_t> {
     return sign(determinant);
   }
 
-  // What 100 digits cannot tell from zero is zero: coordinates are near 1.
+  // What is zero to 100 digits is zero: coordinates are near 1.
   static int sign(const Wide& value) {
     if (abs(value) < Wide("1e-80")) return 0;
     return value > 0 ? 1 : -1;

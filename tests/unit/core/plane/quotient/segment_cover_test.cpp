@@ -135,7 +135,7 @@ TEST(SegmentCover, FindsTrianglesAndSubsegmentsThatAreGone) {
       for (std::uint32_t j = 0; j < 3; ++j) {
         if (sample.mesh().triangle(t).seg[j] == kNoSubsegment) continue;
         const HalfEdge g = sample.mesh().triangle(t).nb[j];
-        if (g != kNoHalfEdge && g < 3 * t + j) continue;  // told by the other side
+        if (g != kNoHalfEdge && g < 3 * t + j) continue;  // counted at the other side
         mesh = sample.mesh();
         mesh.triangle(t).seg[j] = kNoSubsegment;
         EXPECT_NE(fault(wanted, measure_segment_cover(mesh)), "");

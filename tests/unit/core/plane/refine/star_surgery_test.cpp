@@ -141,7 +141,7 @@ TEST(StarSurgery, MergedVerticesLeaveAGoodMesh) {
         if (to_star_begin(work.mesh(), item)) return;
         const OrbitVertex other = star_corner(work.mesh(), item, 1);
         if (work.mesh().kind(other.orbit) == VertexKind::kInput || other.orbit == v) return;
-        // If one lies on a segment, that one is kept: told in its frame.
+        // If one lies on a segment, that one is kept: in its frame.
         const bool on_segment = work.mesh().kind(other.orbit) == VertexKind::kSegment;
         const OrbitVertex kept = on_segment ? OrbitVertex{other.orbit, 0} : OrbitVertex{v, 0};
         const OrbitVertex gone =

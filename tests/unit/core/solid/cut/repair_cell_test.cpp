@@ -256,7 +256,7 @@ TEST_F(RepairCell, ChainsAreAvoidedWhereThatIsFree) {
   EXPECT_EQ(*after, *left);
 }
 
-// What the flaws stand for, told from the nodes of the cell alone.
+// What the flaws stand for, found from the nodes of the cell alone.
 class CellItself {
  public:
   explicit CellItself(const Representatives& cell) : cell_(cell), mesh_(cell.mesh()) {

@@ -36,7 +36,7 @@ double wedge_area(const WedgePatch& patch) {
   return twice / 2;
 }
 
-// Flags, places, boundary and normals as the header tells them; triangles at vertices that were
+// Flags, places, boundary and normals as the header defines them; triangles at vertices that were
 // snapped have turned by up to `turned`.
 void expect_sound_wedge(const WedgePatch& patch, double extent, double turned = 1e-12) {
   ASSERT_EQ(patch.on_lower.size(), patch.points.size());

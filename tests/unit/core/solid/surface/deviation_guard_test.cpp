@@ -134,7 +134,7 @@ TEST(DeviationGuard, TrianglesFaceAsTheSurfaceDid) {
   };
   EXPECT_TRUE(allowed(2.05 * kMost, 44));
   EXPECT_FALSE(allowed(2.05 * kMost, 46));
-  // Thin ones tell less of the way they face.
+  // Thin ones show less of the way they face.
   EXPECT_TRUE(allowed(kMost, 60));
   EXPECT_TRUE(allowed(kMost, 80));
   EXPECT_FALSE(allowed(kMost, 90));
@@ -168,7 +168,7 @@ TEST(DeviationGuard, HeightsAreMeasuredAlongTheNormal) {
   for (const double height : {-1.5, -0.3, 0.0, 0.7, 1.9, 2.1}) {
     const double z = 1 - height * kMost;
     const std::array<Point3, 3> below{Point3{0.2, 0.2, z}, {0.8, 0.3, z}, {0.4, 0.7, z}};
-    // Farther than two deviations away there is no telling.
+    // Farther than two deviations away nothing is known.
     EXPECT_NEAR(guard.mean_height(0, below), std::abs(height) < 2 ? height * kMost : 0, 1e-14);
     EXPECT_NEAR(guard.mean_height(0, {below[1], below[0], below[2]}), 0, 1e-14);
   }

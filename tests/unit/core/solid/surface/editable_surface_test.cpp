@@ -1,4 +1,4 @@
-// Single edits of a quotient surface: plans tell what they do, and what is done can be told from
+// Single edits of a quotient surface: plans say what they do, and what is done can be found from
 // the surface.
 #include "core/solid/surface/editable_surface.hpp"
 
