@@ -23,8 +23,8 @@ namespace symcell {
 [[nodiscard]] std::string describe_segment(std::span<const Point2> vertices,
                                            std::span<const PslgSegment> segments,
                                            std::int64_t segment);
-// "vertices 3 and 4 are both at (1.5, 2); keep one and let the segments refer to it"; the second for
-// vertices that are nearer to each other than the model's coordinates resolve.
+// "vertices 3 and 4 are both at (1.5, 2); keep one and let the segments refer to it"; the second
+// for vertices that are nearer to each other than the model's coordinates resolve.
 // `place`: of the second vertex.  `users`: "segments" or "facets".
 [[nodiscard]] std::string describe_duplicates(std::int64_t first,
                                               std::int64_t second,

@@ -1,5 +1,5 @@
-// What the laws of how elements hang together share, in the plane (planar_link_laws.cpp) and in space
-// (link_laws.cpp).
+// What the laws of how elements hang together share, in the plane (planar_link_laws.cpp) and in
+// space (link_laws.cpp).
 #pragma once
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 //   model      vertices are nodes, segments chains of edges; faces at the mesh's rim are given as
 //              boundary; boundary faces lie on facets of their marker and fill each; every region
 //              has its volume
-//   quality    radius-edge ratio but for elements reported as exempt; volume and edge bounds for all
+//   quality    radius-edge ratio but for exempt elements; volume and edge bounds for all
 //   figures    statistics say what the mesh is
 //   links      and rim, topology, hanging: link_laws.hpp
 #pragma once

@@ -1,4 +1,4 @@
-// Random solids of stacked prisms (layered_cells.hpp), determined by their seed alone, on any axis, of
+// Random solids of stacked prisms (layered_cells.hpp), made from a seed alone, on any axis, of
 // any size: facets with several holes, islands in holes, facets that are not convex with material
 // beyond the gap, coplanar neighbours with and without a segment between them, edges that end
 // inside others, thin webs, tabs, ribs, spokes, pockets, cavities, partitions.

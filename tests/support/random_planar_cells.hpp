@@ -1,4 +1,4 @@
-// Random planar models cut from a grid of cells (sector_grid.hpp), determined by their seed alone: combs,
+// Random planar models cut from a grid of cells (sector_grid.hpp), made from a seed alone: combs,
 // gears, stars of bars, several and nested holes, islands, regions that touch, thin webs, segments
 // that end inside others or nowhere, any fold and size.
 #pragma once

@@ -1,4 +1,4 @@
-// Random solid models with a known symmetry, determined by their seed alone: prisms and frustums with
+// Random solid models with a known symmetry, made from a seed alone: prisms and frustums with
 // bores, layers, cavities, partitions and baffles, antiprisms, bipyramids, rings of loose blocks;
 // on any axis, of any size, blunt or acute.
 #pragma once

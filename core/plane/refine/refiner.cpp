@@ -11,7 +11,7 @@ namespace symcell::plane {
 namespace {
 
 // An angle bound is out of reach where edges this much shorter than the shortest edge of the
-// initial triangulation appear: ordinary grading stays orders of magnitude above it, a cascade falls
+// initial triangulation appear: fair grading stays orders of magnitude above it, a cascade falls
 // below within a few hundred steps.
 constexpr double kCascadeRatio = 1e-5;
 // Edges below this share of the model's extent drown in rounding.

@@ -99,8 +99,8 @@ CellCut as_cut(const Representatives& cell) {
   return cut;
 }
 
-// Raises the weights of symmetry faces at flaws, so that the next minimum avoids them. Of a loose piece
-// the faces towards one side only: which, alternates from round to round.
+// Raises the weights of symmetry faces at flaws, so that the next minimum avoids them. Of a loose
+// piece the faces towards one side only: which, alternates from round to round.
 void raise_weights(const Representatives& cell,
                    const std::vector<CellFlaw>& flaws,
                    int round,

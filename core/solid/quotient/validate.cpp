@@ -15,7 +15,7 @@ namespace {
 
 // Angles round an edge add up to a multiple of the full turn by the layers below, up to rounding;
 // only the multiple is asked for.
-constexpr double kAngleSlack = 0.01;
+constexpr double kTurnSlack = 0.01;
 // Facets are planar up to the rounding of their vertices, so volumes agree up to that only.
 constexpr double kVolumeSlack = 1e-7;
 
@@ -290,7 +290,7 @@ class Checker {
     }
     const bool axis = mesh_.on_axis(a.orbit) && mesh_.on_axis(b.orbit);
     const double turn = 2 * std::numbers::pi / (axis ? static_cast<double>(mesh_.fold()) : 1.0);
-    return closed ? std::abs(sum - turn) < kAngleSlack * turn : sum < (1 + kAngleSlack) * turn;
+    return closed ? std::abs(sum - turn) < kTurnSlack * turn : sum < (1 + kTurnSlack) * turn;
   }
 
   [[nodiscard]] std::uint32_t local_edge(TetCopy c, OrbitVertex a, OrbitVertex b) const {

@@ -14,7 +14,7 @@
 namespace symcell::solid {
 namespace {
 
-// Of the boundary, across which the surface goes on smoothly: with more a patch is of a curved part.
+// Of the boundary, across which the surface is smooth: with more a patch is of a curved part.
 constexpr double kSmoothShare = 0.5;
 // Of the boundary: a side to a neighbour that counts.
 constexpr double kSignificantShare = 0.2;

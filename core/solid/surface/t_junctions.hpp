@@ -7,8 +7,8 @@
 
 namespace symcell::solid {
 
-// A vertex so near to an open edge, as a share of the diameter, lies on it: above the noise of single
-// precision, far below features.
+// A vertex so near to an open edge, as a share of the diameter, lies on it: above the noise of
+// single precision, far below features.
 inline constexpr double kJunctionRel = 1e-6;
 
 // Open edges are split at the ends of other open edges that lie on them within `tolerance`.

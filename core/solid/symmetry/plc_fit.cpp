@@ -289,8 +289,8 @@ PlcFit PlcMatcher::fit(std::int32_t fold, const AxisFrame& frame, bool adjust) c
   constexpr double kReach = 16;  // times the tolerance: how far off a guessed axis may be
   constexpr int kSteps = 3;      // at most: one that does not help is the last
   // Below the rounding of positions an axis is not improved but blurred.
-  constexpr double kRounding = 32 * 0x1p-53;
-  const double finest = kRounding * std::max(complex_.diameter, complex_.magnitude);
+  constexpr double kPlaceRounding = 32 * 0x1p-53;
+  const double finest = kPlaceRounding * std::max(complex_.diameter, complex_.magnitude);
   for (int step = 0; adjust && step < kSteps; ++step) {
     if (!images.matched || images.error > kReach * tolerance_ || images.error <= finest) break;
     const AxisFrame better = adjusted(fold, result.frame, images.image);

@@ -1,4 +1,4 @@
-// How well a rotation maps a PLC onto itself: the error reported is that of the vertex farthest off,
+// How well a rotation maps a PLC onto itself: the error is that of the vertex farthest off,
 // and everything but places must agree exactly.
 #include "core/solid/symmetry/plc_fit.hpp"
 
