@@ -3,11 +3,13 @@
 #include <memory>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "core/base/stopwatch.hpp"
 #include "core/plane/input/validate_pslg.hpp"
 #include "core/plane/mesh_pslg.hpp"
 #include "core/plane/symmetry/symmetrise.hpp"
+#include "core/solid/choose_fold.hpp"
 #include "core/solid/mesh_solid.hpp"
 #include "core/solid/sector/symmetrise.hpp"
 
@@ -22,15 +24,31 @@ void record(const plane::SymmetricPslg& symmetric, Statistics& statistics) {
   reported.detected = symmetric.fold_detected;
 }
 
-void record(const std::unique_ptr<solid::SectorSource>& source, Statistics& statistics) {
-  const solid::Symmetry& found = source->symmetry();
+struct SymmetricSolid {
+  std::unique_ptr<solid::SectorSource> source;
+  std::vector<FoldEstimate> candidates;
+};
+
+void record(const SymmetricSolid& solid, Statistics& statistics) {
+  const solid::Symmetry& found = solid.source->symmetry();
   Statistics::Symmetry& reported = statistics.symmetry;
   reported.fold = found.fold;
   reported.axis_origin = found.frame.origin;
   reported.axis_direction = found.frame.direction();
   reported.error_rel = found.error_rel;
   reported.detected = found.fold_detected;
-  statistics.repairs = source->repairs();
+  reported.candidates = solid.candidates;
+  statistics.repairs = solid.source->repairs();
+}
+
+Result<SymmetricSolid> at_its_fold(Result<std::unique_ptr<solid::SectorSource>> source,
+                                   const MeshOptions& options,
+                                   ExecutionContext& context) {
+  if (!source) return error_of(source);
+  auto chosen = solid::choose_fold(**source, options, context);
+  if (!chosen) return error_of(chosen);
+  auto& taken = chosen->source ? chosen->source : *source;
+  return SymmetricSolid{std::move(taken), std::move(chosen->candidates)};
 }
 
 // `symmetrise` makes the model symmetric, `mesh` meshes what that gives.
@@ -71,14 +89,16 @@ Result<MeshOutcome> mesh_model(const Model& model,
     };
     return run(symmetrise, mesh, context);
   }
-  const auto mesh = [&](const std::unique_ptr<solid::SectorSource>& source) {
-    return solid::mesh_solid(*source, options, context);
+  const auto mesh = [&](const SymmetricSolid& solid) {
+    return solid::mesh_solid(*solid.source, options, context);
   };
   if (const auto* plc = std::get_if<Plc>(&model)) {
-    return run([&] { return solid::symmetrise_plc(*plc, options, context); }, mesh, context);
+    const auto symmetrise = [&] { return solid::symmetrise_plc(*plc, options, context); };
+    return run([&] { return at_its_fold(symmetrise(), options, context); }, mesh, context);
   }
   const auto& surface = std::get<TriangleSurface>(model);
-  return run([&] { return solid::symmetrise_surface(surface, options, context); }, mesh, context);
+  const auto symmetrise = [&] { return solid::symmetrise_surface(surface, options, context); };
+  return run([&] { return at_its_fold(symmetrise(), options, context); }, mesh, context);
 }
 
 Result<Inspection> inspect_model(const Model& model,

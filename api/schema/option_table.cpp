@@ -107,14 +107,16 @@ Result<void> set_bound(const OptionInfo& info, const OptionValue& value, double&
 }
 
 Result<void> set_fold(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
-  if (value.kind == Kind::kText && value.text == "auto") {
+  options.largest_fold = value.kind == Kind::kText && value.text == "max";
+  if (options.largest_fold || (value.kind == Kind::kText && value.text == "auto")) {
     options.fold.reset();
     return {};
   }
   const std::optional<std::uint64_t> fold = as_whole(value);
   if (!fold || *fold < 1 || *fold > static_cast<std::uint64_t>(kMaxFold)) {
-    return refuse(ErrorCode::kBadFold, info, value,
-                  "\"auto\" or a whole number from 1 (no symmetry) to " + std::to_string(kMaxFold));
+    return refuse(
+        ErrorCode::kBadFold, info, value,
+        "\"auto\", \"max\" or a whole number from 1 (no symmetry) to " + std::to_string(kMaxFold));
   }
   options.fold = static_cast<std::int32_t>(*fold);
   return {};
@@ -323,10 +325,15 @@ Json get_member(const MeshOptions& o, ModelKind) {
 using enum OptionScope;
 
 constexpr auto kRows = std::to_array<OptionRow>({
-    {{"fold", "auto|N", "auto",
-      "n-fold symmetry, 1 to 30000; 1: none; auto: the largest that the model has", kAll},
+    {{"fold", "auto|max|N", "auto",
+      "n-fold symmetry, 1 to 30000; 1: none; max: the largest that the model has; auto: that, or "
+      "for "
+      "solids the divisor of it whose cell is the smallest",
+      kAll},
      set_fold,
-     [](const MeshOptions& o, ModelKind) { return o.fold ? Json(*o.fold) : Json("auto"); }},
+     [](const MeshOptions& o, ModelKind) {
+       return o.fold ? Json(*o.fold) : Json(o.largest_fold ? "max" : "auto");
+     }},
     flag_row<&MeshOptions::ignore_markers>(
         {"ignore_markers", "", "", "markers and region attributes take no part in the symmetry",
          kAll}),

@@ -108,6 +108,14 @@ Json inspected(const SolidInspection& inspection) {
   return json;
 }
 
+Json estimates_to_json(const std::vector<FoldEstimate>& candidates) {
+  Json json = Json::array();
+  for (const FoldEstimate& c : candidates) {
+    json.push_back({{"fold", c.fold}, {"elements", std::round(c.elements)}, {"meshed", c.meshed}});
+  }
+  return json;
+}
+
 }  // namespace
 
 Json statistics_to_json(const Statistics& statistics, const MeshOptions& options, ModelKind kind) {
@@ -120,6 +128,9 @@ Json statistics_to_json(const Statistics& statistics, const MeshOptions& options
                       {"axis", axis_to_json(symmetry.axis_origin, symmetry.axis_direction)},
                       {"error", number(symmetry.error_rel)},
                       {"detected", symmetry.detected}};
+  if (!symmetry.candidates.empty()) {
+    json["symmetry"]["candidates"] = estimates_to_json(symmetry.candidates);
+  }
   json["refinement"] = {{"steiner_points", refinement.steiner_points},
                         {"splits", refinement.splits},
                         {"flips", refinement.flips},

@@ -18,6 +18,13 @@ struct ExemptCount {
   std::uint64_t elements = 0;  // of the cell
 };
 
+// Tetrahedra of a cell at one of the folds that a model allows.
+struct FoldEstimate {
+  std::int32_t fold = 1;
+  double elements = 0;  // without improvement and bounds on sizes
+  bool meshed = false;  // counted, not estimated from another fold's mesh
+};
+
 struct Statistics {
   struct Cell {
     std::uint64_t elements = 0;
@@ -44,6 +51,8 @@ struct Statistics {
     Point3 axis_direction{0, 0, 1};
     double error_rel = 0;  // of the model's diameter
     bool detected = false;
+    // Solids whose fold was chosen: from which, descending; empty: nothing to choose from.
+    std::vector<FoldEstimate> candidates;
   } symmetry;
 
   struct Refinement {

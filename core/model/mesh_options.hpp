@@ -19,7 +19,9 @@ inline constexpr double kSurfaceSymmetryToleranceRel = 1e-3;  // tessellated sur
 
 // Values are what a user writes in `options`; infinities mean "no bound".
 struct MeshOptions {
-  std::optional<std::int32_t> fold;   // nullopt: detect; 1: no symmetry
+  std::optional<std::int32_t> fold;  // nullopt: detect; 1: no symmetry
+  bool largest_fold =
+      false;  // of solids whose fold is detected: not the one with the smallest cell
   bool ignore_markers = false;        // markers and region attributes take no part in the symmetry
   std::optional<Point2> center;       // planar; nullopt: detect
   std::optional<Point3> axis_origin;  // solids; nullopt: detect

@@ -19,8 +19,9 @@
 namespace symcell::solid {
 namespace {
 
-// Depths of refinement after each round, full or not.
-constexpr int kDepths[] = {2, 2, 3, 4, 5};
+// Depths of refinement after each round, full or not: no deeper before points are free to go
+// anywhere.
+constexpr int kDepths[] = {2, 2, 2, 2, 2, 3, 3, 4, 5};
 // Depths of refinement where no improvement follows. What is bad after a shallow run is little, and
 // so is the budget of the deeper one.
 constexpr int kDepthsAlone[] = {2, 3, 4};
@@ -34,6 +35,13 @@ struct Work {
   bool exempt_too = false;   // in later runs: most of what is bad at first is mended without
   bool illegal_too = false;  // what is not Delaunay is refined like what is bad
   RefineCounters refined;
+  std::size_t runs = 0;  // of refinement, so far
+
+  // Of the next run. Without improvement between them runs do not go beyond the limit of those.
+  [[nodiscard]] std::size_t most_hidden(bool alone) const {
+    if (alone) return limits.most_hidden_alone;
+    return runs < limits.most_hidden.size() ? limits.most_hidden[runs] : Editor::kAny;
+  }
 };
 
 double total_volume(const Editor& editor) {
@@ -81,13 +89,19 @@ Result<double> check_volume_budget(const Editor& editor,
                   "; raise max_volume (or the regions' max_volume) or max_elements");
 }
 
-Result<void> refine(
-    Editor& editor, const Criteria& criteria, int depth, ExecutionContext& context, Work& work) {
+Result<void> refine(Editor& editor,
+                    const Criteria& criteria,
+                    int depth,
+                    bool alone,
+                    ExecutionContext& context,
+                    Work& work) {
   Refiner refiner(editor, criteria, context);
   refiner.set_most_tets(work.most_tets);
   refiner.set_most_shaped(work.most_shaped);
   refiner.set_least_distance(work.least_distance);
   refiner.set_max_depth(depth);
+  refiner.set_most_hidden(work.most_hidden(alone));
+  ++work.runs;
   if (work.illegal_too) refiner.treat_illegal();
   if (work.exempt_too) refiner.treat_exempt();
   work.exempt_too = true;
@@ -125,6 +139,7 @@ Result<void> improve(Editor& editor,
       const std::size_t bad = count_bad(editor, criteria);
       if (bad == 0) break;
       last =
+          work.runs > work.limits.most_hidden.size() &&
           static_cast<double>(bad) > work.limits.least_progress * static_cast<double>(bad_before);
       bad_before = bad;
       full = bad > work.limits.few_bad &&
@@ -132,7 +147,7 @@ Result<void> improve(Editor& editor,
     }
     // What is too large must not stay, whatever else does.
     const int depth = last ? kDepths[0] : kDepths[round];
-    SYMCELL_TRY(refine(editor, criteria, depth, context, work));
+    SYMCELL_TRY(refine(editor, criteria, depth, false, context, work));
     if (last) break;
   }
   if (options.delaunay) return {};  // flips undo what comes now
@@ -189,7 +204,7 @@ Result<void> refine_alone(Editor& editor,
                           Work& work) {
   if (!options.delaunay) {
     for (const int depth : kDepthsAlone) {
-      SYMCELL_TRY(refine(editor, criteria, depth, context, work));
+      SYMCELL_TRY(refine(editor, criteria, depth, true, context, work));
     }
     return {};
   }
@@ -197,12 +212,12 @@ Result<void> refine_alone(Editor& editor,
     SYMCELL_TRY(legalise(editor, context));
     work.illegal_too = count_illegal(editor) > 0;
     if (!work.illegal_too && count_bad(editor, criteria) == 0) return {};
-    SYMCELL_TRY(refine(editor, criteria, depth, context, work));
+    SYMCELL_TRY(refine(editor, criteria, depth, true, context, work));
   }
   SYMCELL_TRY(legalise(editor, context));
   // Flips know of no bound; where the two cannot be had together, the bounds are kept.
   if (count_bad(editor, criteria) == 0) return {};
-  return refine(editor, criteria, kDepthsDelaunay[0], context, work);
+  return refine(editor, criteria, kDepthsDelaunay[0], true, context, work);
 }
 
 // Whether all of the facets and segments is covered, once, and nothing else.
@@ -253,7 +268,7 @@ Result<RefinedSolid> refine_and_improve(InitialTetrahedralization solid,
   work.most_tets = most_tets;
   work.least_distance = work.limits.least_distance * shortest_edge(editor);
   if (!options.plain) {
-    auto ok = refine(editor, criteria, kDepths[0], context, work);
+    auto ok = refine(editor, criteria, kDepths[0], false, context, work);
     if (ok) ok = improve(editor, criteria, options, context, work);
     if (!ok) return error_of(ok);
   }

@@ -412,10 +412,7 @@ bool Editor::add_seed(Cavity& cavity, std::size_t index) {
   return true;
 }
 
-bool Editor::find_cavity(Point3 p,
-                         const Location& where,
-                         Cavity& cavity,
-                         std::size_t most_dropped) {
+bool Editor::find_cavity(Point3 p, const Location& where, Cavity& cavity, std::size_t most_hidden) {
   cavity.point = p;
   cavity.where = where;
   point_on_axis_ = where.kind == Location::Kind::kOnEdge && mesh_.on_axis(where.edge[0].orbit) &&
@@ -423,7 +420,7 @@ bool Editor::find_cavity(Point3 p,
   seed_cavity(cavity);
   find_own_facets(cavity);
   grow_cavity(cavity);
-  std::size_t dropped = 0;
+  std::size_t hidden = 0;
   while (true) {
     flat_face_ = 4;
     std::int64_t bad = gather_boundary(cavity);
@@ -442,8 +439,8 @@ bool Editor::find_cavity(Point3 p,
       continue;
     }
     if (hidden_.empty()) hidden_.push_back(static_cast<std::size_t>(bad));
-    dropped += hidden_.size();
-    if (dropped > most_dropped) return false;
+    hidden += hidden_.size();
+    if (hidden > most_hidden) return false;
     drop(cavity, hidden_);
   }
   double nearest2 = std::numeric_limits<double>::infinity();

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -91,13 +92,12 @@ class Editor {
   }
 
   // The cavity of `p`, false if not even the smallest one would do (p too near a vertex or a face),
-  // or if more than `most_dropped` of the tetrahedra whose spheres hold p cannot be seen from it:
-  // then p is in the wrong place.
-  static constexpr std::size_t kManyDropped = 40;
+  // or if more than `most_hidden` of the tetrahedra whose spheres hold p cannot be seen from it.
+  static constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
   [[nodiscard]] bool find_cavity(Point3 p,
                                  const Location& where,
                                  Cavity& cavity,
-                                 std::size_t most_dropped = kManyDropped);
+                                 std::size_t most_hidden = kAny);
   // Inserts the cavity's point; kNoVertex if the mesh refuses. New tetrahedra: mesh().added_ids().
   // `parent`: segment or facet of a point on one.
   static constexpr VertexId kNoVertex = -1;
@@ -136,6 +136,8 @@ class Editor {
   };
   [[nodiscard]] Walk walk(TetCopy from, Point3 p) const;
 
+  [[nodiscard]] CavityFace face_of_copy(TetCopy c, std::uint32_t i) const;
+
  private:
   void remeasure_all();
   [[nodiscard]] bool in_sphere(TetCopy c, Point3 p) const;
@@ -155,7 +157,6 @@ class Editor {
   [[nodiscard]] bool add_seed(Cavity& cavity, std::size_t index);
   [[nodiscard]] bool in_own_plane(const Cavity& cavity, const CavityFace& face) const;
   [[nodiscard]] bool contains(const Cavity& cavity, TetCopy c) const;
-  [[nodiscard]] CavityFace face_of_copy(TetCopy c, std::uint32_t i) const;
 
   QuotientTetrahedralization& mesh_;
   std::vector<TetMeasures> measures_;

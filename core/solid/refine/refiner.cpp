@@ -154,11 +154,9 @@ bool Refiner::allowed(const Cavity& cavity, const Cause& cause, double share) co
   return nearest >= cause.shortest || (cause.depth < max_depth_ && !cause.spare);
 }
 
-// Bounds on size must be kept, however the cavity has to be cut down; for the sake of shape a point
-// that many tetrahedra hide from does no good.
+// Bounds on size must be kept, however the cavity has to be cut down.
 bool Refiner::find_cavity(Point3 p, const Location& where, const Cause& cause) {
-  constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();  // tetrahedra dropped
-  return editor_.find_cavity(p, where, cavity_, cause.size ? kAny : Editor::kManyDropped);
+  return editor_.find_cavity(p, where, cavity_, cause.size ? Editor::kAny : most_hidden_);
 }
 
 Refiner::Outcome Refiner::insert(
@@ -190,53 +188,88 @@ Refiner::Outcome Refiner::treat(TetId t) {
   if (walk.blocked) return split_subfacet({walk.at, walk.face}, cause);
   Location where;
   where.at = walk.at;
-  if (!find_cavity(p, where, cause)) return Outcome::kRefused;
-  const Encroached e = encroached_by(cavity_, true);
+  const bool found = find_cavity(p, where, cause);
+  // Where there is none the point lies on a face or an edge of the seeds, and on what is
+  // constrained there if it is: models that are made with compasses are full of such places.
+  const Encroached e = found ? encroached_by(cavity_, true) : encroached_beside(cavity_, true);
   if (e.what == Encroached::What::kSubsegment) return split_segment(e.at, e.a, e.b, cause);
   if (e.what == Encroached::What::kSubfacet) return split_subfacet(e.subfacet, cause);
-  if (!allowed(cavity_, cause, kInteriorShare)) return Outcome::kRefused;
+  if (!found || !allowed(cavity_, cause, kInteriorShare)) return Outcome::kRefused;
   const Outcome done = insert(cavity_, VertexKind::kFree, -1, false, cause);
   if (done == Outcome::kInserted) ++counters_.interior_points;
   return done;
 }
 
+// Subsegments go first: a subfacet beside one may be mended with it.
+void Refiner::Encroached::look_at_segments(const QuotientTetrahedralization& mesh,
+                                           Point3 p,
+                                           const CavityFace& f,
+                                           TetCopy owner) {
+  for (std::size_t j = 0; j < 3; ++j) {
+    const std::size_t k = (j + 1) % 3;
+    if (mesh.segment_of(f.corners[j], f.corners[k]) == kNoSegment) continue;
+    const Point3 middle = 0.5 * (f.points[j] + f.points[k]);
+    const double share =
+        4 * squared_distance(p, middle) / squared_distance(f.points[j], f.points[k]);
+    if (share >= worst) continue;
+    worst = share;
+    what = What::kSubsegment;
+    at = owner;
+    a = f.corners[j];
+    b = f.corners[k];
+  }
+}
+
+void Refiner::Encroached::look_at_facet(Point3 p, const CavityFace& f, Subfacet s) {
+  if (f.facet == kNoFacet) return;
+  const Point3 centre = triangle_circumcentre(f.points[0], f.points[1], f.points[2]);
+  const double share = squared_distance(p, centre) / squared_distance(f.points[0], centre);
+  if (share >= worst) return;
+  worst = share;
+  what = What::kSubfacet;
+  subfacet = s;
+}
+
 Refiner::Encroached Refiner::encroached_by(const Cavity& cavity, bool facets) const {
   Encroached found;
-  const Point3 p = cavity.point;
-  double worst = kEncroachment2;
-  // Subsegments go first: a subfacet beside one may be mended with it.
+  found.worst = kEncroachment2;
   for (const CavityFace& f : cavity.faces) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const std::size_t k = (j + 1) % 3;
-      if (mesh_.segment_of(f.corners[j], f.corners[k]) == kNoSegment) continue;
-      const Point3 middle = 0.5 * (f.points[j] + f.points[k]);
-      const double share =
-          4 * squared_distance(p, middle) / squared_distance(f.points[j], f.points[k]);
-      if (share >= worst) continue;
-      worst = share;
-      found.what = Encroached::What::kSubsegment;
-      found.at = cavity.tets[f.owner];
-      found.a = f.corners[j];
-      found.b = f.corners[k];
-    }
+    found.look_at_segments(mesh_, cavity.point, f, cavity.tets[f.owner]);
   }
   if (found.what != Encroached::What::kNothing || !facets) return found;
   for (const CavityFace& f : cavity.faces) {
-    if (f.facet == kNoFacet) continue;
-    const Point3 centre = triangle_circumcentre(f.points[0], f.points[1], f.points[2]);
-    const double share = squared_distance(p, centre) / squared_distance(f.points[0], centre);
-    if (share >= worst) continue;
-    worst = share;
-    found.what = Encroached::What::kSubfacet;
     const TetCopy at = cavity.tets[f.owner];
-    for (std::uint32_t i = 0; i < 4; ++i) {
-      const OrbitVertex x = mesh_.corner(at, i);
-      if (x != f.corners[0] && x != f.corners[1] && x != f.corners[2]) {
-        found.subfacet = {at, i};
-      }
-    }
+    found.look_at_facet(cavity.point, f, {at, face_with(at, f.corners)});
   }
   return found;
+}
+
+Refiner::Encroached Refiner::encroached_beside(const Cavity& cavity, bool facets) const {
+  Encroached found;
+  found.worst = kEncroachment2;
+  for (const bool segments : {true, false}) {
+    for (std::size_t s = 0; s < cavity.seeds; ++s) {
+      for (std::uint32_t i = 0; i < 4; ++i) {
+        const CavityFace f = editor_.face_of_copy(cavity.tets[s], i);
+        if (segments) {
+          found.look_at_segments(mesh_, cavity.point, f, cavity.tets[s]);
+        } else {
+          found.look_at_facet(cavity.point, f, {cavity.tets[s], i});
+        }
+      }
+    }
+    if (found.what != Encroached::What::kNothing || !facets) break;
+  }
+  return found;
+}
+
+std::uint32_t Refiner::face_with(TetCopy at, const std::array<OrbitVertex, 3>& corners) const {
+  std::uint32_t face = 0;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const OrbitVertex x = mesh_.corner(at, i);
+    if (std::find(corners.begin(), corners.end(), x) == corners.end()) face = i;
+  }
+  return face;
 }
 
 bool Refiner::cross_edge(Subfacet& s, OrbitVertex a, OrbitVertex b) const {
@@ -313,10 +346,10 @@ Refiner::Outcome Refiner::split_subfacet(Subfacet s, const Cause& cause) {
   where.kind = Location::Kind::kOnSubfacet;
   where.at = s.at;
   where.face = s.face;
-  if (!find_cavity(p, where, cause)) return Outcome::kRefused;
-  const Encroached e = encroached_by(cavity_, false);
+  const bool found = find_cavity(p, where, cause);
+  const Encroached e = found ? encroached_by(cavity_, false) : encroached_beside(cavity_, false);
   if (e.what == Encroached::What::kSubsegment) return split_segment(e.at, e.a, e.b, cause);
-  if (!allowed(cavity_, cause, kFacetShare)) return Outcome::kRefused;
+  if (!found || !allowed(cavity_, cause, kFacetShare)) return Outcome::kRefused;
   const Outcome done = insert(cavity_, VertexKind::kFacet, facet, false, cause);
   if (done == Outcome::kInserted) ++counters_.facet_splits;
   return done;

@@ -67,6 +67,10 @@ class Refiner {
   // The run ends with kElementLimit where the mesh gets larger than this.
   void set_most_tets(std::uint64_t most) { most_tets_ = most; }
 
+  // A point for the sake of shape is refused where it does not see more tetrahedra than this of
+  // those whose spheres hold it: in a mesh so far from Delaunay it would be in the wrong place.
+  void set_most_hidden(std::size_t most) { most_hidden_ = most; }
+
   // Until no tetrahedron is bad but the exempt and those whose points were refused.
   // Errors: kElementLimit, kTimeLimit, kCancelled.
   [[nodiscard]] Result<void> run();
@@ -118,12 +122,24 @@ class Refiner {
 
   struct Encroached {
     enum class What : std::uint8_t { kNothing, kSubfacet, kSubsegment };
+    double worst = 1;  // share of the squared radius at which the point stands, the least so far
     What what = What::kNothing;
     Subfacet subfacet;
     TetCopy at;
     OrbitVertex a, b;
+
+    void look_at_segments(const QuotientTetrahedralization& mesh,
+                          Point3 p,
+                          const CavityFace& face,
+                          TetCopy owner);
+    void look_at_facet(Point3 p, const CavityFace& face, Subfacet s);
   };
   [[nodiscard]] Encroached encroached_by(const Cavity& cavity, bool facets) const;
+  // By a point for which there is no cavity: of its seeds.
+  [[nodiscard]] Encroached encroached_beside(const Cavity& cavity, bool facets) const;
+  // The face of `at` with these corners.
+  [[nodiscard]] std::uint32_t face_with(TetCopy at,
+                                        const std::array<OrbitVertex, 3>& corners) const;
 
   Editor& editor_;
   QuotientTetrahedralization& mesh_;
@@ -137,6 +153,7 @@ class Refiner {
   std::uint64_t most_shaped_ = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t most_tets_ = std::numeric_limits<std::uint64_t>::max();
   double least_distance_ = 0;
+  std::size_t most_hidden_ = Editor::kAny;
   std::vector<std::uint8_t> depth_;  // per vertex
   Cavity cavity_;
   RefineCounters counters_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,6 +32,11 @@ class SectorSource {
   // code if this candidate cannot be cut; limits.
   [[nodiscard]] virtual Result<Sector> sector(std::int32_t index,
                                               ExecutionContext& context) const = 0;
+
+  // The same model with a fold that divides this one's, about the same axis.
+  // Errors: as symmetrising it with that fold given.
+  [[nodiscard]] virtual Result<std::unique_ptr<SectorSource>> with_fold(
+      std::int32_t fold, ExecutionContext& context) const = 0;
 
   // Looks at points of a finished mesh's boundary, in the local frame, with all of their copies:
   // whether each is as near to the model's surface as the tolerance says. Where a mesh keeps the

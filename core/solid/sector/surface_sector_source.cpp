@@ -248,6 +248,17 @@ void SurfaceSectorSource::choose_candidates() {
   }
 }
 
+// Turns of the smaller fold are turns of the larger one, so its error is no larger.
+Result<std::unique_ptr<SectorSource>> SurfaceSectorSource::with_fold(
+    std::int32_t fold, ExecutionContext& /*context*/) const {
+  auto other = std::make_unique<SurfaceSectorSource>(*this);
+  other->symmetry_.fold = fold;
+  other->candidates_.clear();
+  other->preferred_ = 0;
+  other->choose_candidates();
+  return other;
+}
+
 // What each share of the tolerance leads to differs from part to part, and how much of it the
 // symmetry error has used up from place to place: a result that is no longer the input's shape is
 // none.

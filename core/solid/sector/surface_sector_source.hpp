@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,6 +44,8 @@ class SurfaceSectorSource final : public SectorSource {
     return full_.triangles.size() / static_cast<std::size_t>(symmetry_.fold) + 1;
   }
   [[nodiscard]] Result<Sector> sector(std::int32_t index, ExecutionContext& context) const override;
+  [[nodiscard]] Result<std::unique_ptr<SectorSource>> with_fold(
+      std::int32_t fold, ExecutionContext& context) const override;
   [[nodiscard]] Result<void> check_boundary(std::span<const Point3> points,
                                             ExecutionContext& context) const override;
 

@@ -15,27 +15,6 @@
 namespace symcell::solid {
 namespace {
 
-class PlcSource final : public SectorSource {
- public:
-  explicit PlcSource(SymmetricPlc plc) : plc_(std::move(plc)), angles_(cut_angles(plc_)) {}
-
-  [[nodiscard]] const Symmetry& symmetry() const override { return plc_.symmetry; }
-  [[nodiscard]] const std::vector<std::string>& repairs() const override { return repairs_; }
-  [[nodiscard]] std::int32_t candidates() const override {
-    return static_cast<std::int32_t>(angles_.size());
-  }
-  [[nodiscard]] Result<Sector> sector(std::int32_t index,
-                                      ExecutionContext& context) const override {
-    SYMCELL_ASSERT(index >= 0 && index < candidates());
-    return cut_sector(plc_, angles_[static_cast<std::size_t>(index)], context);
-  }
-
- private:
-  SymmetricPlc plc_;
-  std::vector<double> angles_;
-  std::vector<std::string> repairs_;
-};
-
 Result<SymmetricPlc> find_and_average(const ValidPlc& valid,
                                       const MeshOptions& options,
                                       std::vector<PlcFit>* ladder,
@@ -54,6 +33,46 @@ Result<SymmetricPlc> find_and_average(const ValidPlc& valid,
   return plc;
 }
 
+class PlcSource final : public SectorSource {
+ public:
+  PlcSource(std::shared_ptr<const ValidPlc> valid, MeshOptions options, SymmetricPlc plc)
+      : valid_(std::move(valid)),
+        options_(std::move(options)),
+        plc_(std::move(plc)),
+        angles_(cut_angles(plc_)) {}
+
+  [[nodiscard]] const Symmetry& symmetry() const override { return plc_.symmetry; }
+  [[nodiscard]] const std::vector<std::string>& repairs() const override { return repairs_; }
+  [[nodiscard]] std::int32_t candidates() const override {
+    return static_cast<std::int32_t>(angles_.size());
+  }
+  [[nodiscard]] Result<Sector> sector(std::int32_t index,
+                                      ExecutionContext& context) const override {
+    SYMCELL_ASSERT(index >= 0 && index < candidates());
+    return cut_sector(plc_, angles_[static_cast<std::size_t>(index)], context);
+  }
+
+  [[nodiscard]] Result<std::unique_ptr<SectorSource>> with_fold(
+      std::int32_t fold, ExecutionContext& context) const override {
+    MeshOptions options = options_;
+    options.fold = fold;
+    options.axis_origin = plc_.symmetry.frame.origin;
+    options.axis_direction = plc_.symmetry.frame.direction();
+    auto plc = find_and_average(*valid_, options, nullptr, context);
+    if (!plc) return error_of(plc);
+    plc->symmetry.fold_detected = plc_.symmetry.fold_detected;
+    plc->symmetry.axis_detected = plc_.symmetry.axis_detected;
+    return std::make_unique<PlcSource>(valid_, options_, std::move(*plc));
+  }
+
+ private:
+  std::shared_ptr<const ValidPlc> valid_;
+  MeshOptions options_;  // as given
+  SymmetricPlc plc_;
+  std::vector<double> angles_;
+  std::vector<std::string> repairs_;
+};
+
 }  // namespace
 
 Result<std::unique_ptr<SectorSource>> symmetrise_plc(const Plc& plc,
@@ -61,9 +80,10 @@ Result<std::unique_ptr<SectorSource>> symmetrise_plc(const Plc& plc,
                                                      ExecutionContext& context) {
   auto valid = validate_plc(plc, context);
   if (!valid) return error_of(valid);
-  auto symmetric = find_and_average(*valid, options, nullptr, context);
+  auto shared = std::make_shared<const ValidPlc>(std::move(*valid));
+  auto symmetric = find_and_average(*shared, options, nullptr, context);
   if (!symmetric) return error_of(symmetric);
-  return std::make_unique<PlcSource>(std::move(*symmetric));
+  return std::make_unique<PlcSource>(std::move(shared), options, std::move(*symmetric));
 }
 
 Result<SolidInspection> inspect_plc(const Plc& plc,

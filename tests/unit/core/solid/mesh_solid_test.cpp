@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -122,6 +123,10 @@ class PrismSource final : public SectorSource {
       return fail(ErrorCode::kInternal, "cut number " + std::to_string(index) + " fails");
     }
     return sector_;
+  }
+  [[nodiscard]] Result<std::unique_ptr<SectorSource>> with_fold(std::int32_t,
+                                                                ExecutionContext&) const override {
+    return fail(ErrorCode::kBadFold, "there is but one fold");
   }
   [[nodiscard]] double volume() const { return sector_.expected_volume; }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -47,6 +48,10 @@ class ListedSectors final : public SectorSource {
     sector.narrow_corners = entry.narrow;
     if (!entry.usable) sector.faces.pop_back();  // a hole
     return sector;
+  }
+  [[nodiscard]] Result<std::unique_ptr<SectorSource>> with_fold(std::int32_t,
+                                                                ExecutionContext&) const override {
+    return fail(ErrorCode::kBadFold, "there is but one fold");
   }
 
   [[nodiscard]] std::int32_t preferred() const override {
