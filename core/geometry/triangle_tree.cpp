@@ -11,9 +11,9 @@ constexpr std::size_t kLeafSize = 4;
 // Halving 2^31 items ends well before; a stack of twice the depth is never full.
 constexpr std::size_t kStackSize = 128;
 // A triangle is thin if its height is below the root of this share of its longer side at the first
-// corner: products of dot products lose half of their digits there, and all of them where it is
-// thinner by as much again.
-constexpr double kThin = 1e-8;
+// corner. By products of dot products places are told in it with errors that grow as the
+// square of the side over the height; there they are some hundred roundings.
+constexpr double kThin = 1e-4;
 
 inline double squared_distance_to_box(Point3 p, const Point3& low, const Point3& high) {
   const double dx = std::max(std::max(low.x - p.x, p.x - high.x), 0.0);
