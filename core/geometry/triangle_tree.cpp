@@ -10,6 +10,10 @@ namespace {
 constexpr std::size_t kLeafSize = 4;  // triangles: fewer cost nodes, more distances
 // Halving 2^31 items ends well before; a stack of twice the depth is never full.
 constexpr std::size_t kStackSize = 128;
+// A triangle is thin if its height is below the root of this share of its longer side at the first
+// corner. By products of dot products places are told in it with errors that grow as the
+// square of the side over the height; there they are some hundred roundings.
+constexpr double kThin = 1e-4;
 
 inline double squared_distance_to_box(Point3 p, const Point3& low, const Point3& high) {
   const double dx = std::max(std::max(low.x - p.x, p.x - high.x), 0.0);
@@ -23,6 +27,20 @@ bool meet(const Point3& low, const Point3& high, const Point3& low2, const Point
          low.z <= high2.z && low2.z <= high.z;
 }
 
+// The foot of the perpendicular from p on the plane of a thin triangle, known to be inside it: from
+// the foot on the longest side on, as what is left from there is no longer than the triangle is thin.
+Point3 foot_in_thin(Point3 p, Point3 a, Point3 b, Point3 c) {
+  const double ab2 = squared_distance(a, b);
+  if (ab2 < std::max(squared_distance(b, c), squared_distance(c, a))) {
+    return foot_in_thin(p, b, c, a);
+  }
+  const Point3 ab = b - a;
+  const Point3 on_side = a + (dot(p - a, ab) / ab2) * ab;
+  const Point3 across = c - a - (dot(c - a, ab) / ab2) * ab;
+  const double across2 = squared_length(across);
+  return across2 > 0 ? on_side + (dot(p - on_side, across) / across2) * across : on_side;
+}
+
 }  // namespace
 
 // Source: [Ericson05] sec. 5.1.5, by regions of barycentric coordinates.
@@ -33,20 +51,24 @@ Point3 closest_point(Point3 p, Point3 a, Point3 b, Point3 c) {
   const Point3 bp = p - b;
   const double d3 = dot(ab, bp), d4 = dot(ac, bp);
   if (d3 >= 0 && d4 <= d3) return b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) return a + (d1 / (d1 - d3)) * ab;
+  const double ab2 = squared_length(ab), ac2 = squared_length(ac), abac = dot(ab, ac);
+  const double longest2 = std::max(ab2, ac2);
+  const bool thin = ab2 * ac2 - abac * abac <= kThin * longest2 * longest2;
   const Point3 cp = p - c;
+  const Point3 normal = thin ? cross(ab, ac) : Point3{};
+  const double vc = thin ? dot(normal, cross(ap, bp)) : d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) return a + (d1 / (d1 - d3)) * ab;
   const double d5 = dot(ab, cp), d6 = dot(ac, cp);
   if (d6 >= 0 && d5 <= d6) return c;
-  const double vb = d5 * d2 - d1 * d6;
+  const double vb = thin ? dot(normal, cross(cp, ap)) : d5 * d2 - d1 * d6;
   if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) return a + (d2 / (d2 - d6)) * ac;
-  const double va = d3 * d6 - d5 * d4;
+  const double va = thin ? dot(normal, cross(bp, cp)) : d3 * d6 - d5 * d4;
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && (d4 - d3) + (d5 - d6) > 0) {
     return b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b);
   }
   const double sum = va + vb + vc;
   if (!(sum > 0)) return a;  // no area: one of the sides above is as near, but for rounding
-  return a + (vb / sum) * ab + (vc / sum) * ac;
+  return thin ? foot_in_thin(p, a, b, c) : a + (vb / sum) * ab + (vc / sum) * ac;
 }
 
 TriangleTree::TriangleTree(std::span<const Point3> points, std::span<const Triangle> triangles) {

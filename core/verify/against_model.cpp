@@ -121,7 +121,7 @@ Result<ExaminedModel> examine(const Plc& plc) {
   ExecutionContext context;
   Result<solid::ValidPlc> valid = solid::validate_plc(plc, context);
   if (!valid) return error_of(valid);
-  PlcModel model{std::move(*valid), 0};
+  PlcModel model{&plc, std::move(*valid), 0};
   const solid::PlcComplex& complex = model.valid.complex;
   const solid::PlcCells& cells = model.valid.cells;
   model.off_plane = off_plane(complex);
@@ -244,23 +244,44 @@ Result<ExaminedModel> examine_model(const Model& model) {
   return std::visit([](const auto& given) { return examine(given); }, model);
 }
 
-double model_asymmetry(const Model& model,
-                       double diameter,
+std::vector<char> vertices_of_domain(const PlanarModel& model) {
+  const plane::PlanarMap& map = model.subdomains.map;
+  std::vector<char> result(model.pslg->vertices.size(), 0);
+  for (std::size_t p = 0; p < map.pieces.size(); ++p) {
+    if (!model.meshed_beside(p)) continue;
+    result[at(map.pieces[p].a)] = 1;
+    result[at(map.pieces[p].b)] = 1;
+  }
+  for (std::size_t v = 0; v < result.size(); ++v) {
+    const std::int32_t face = map.vertex_face[v];
+    if (face >= 0 && model.subdomains.faces[at(face)].meshed) result[v] = 1;
+  }
+  return result;
+}
+
+double model_asymmetry(const ExaminedModel& model,
                        const std::function<Point3(const Point3&)>& rotate) {
-  const double near = kNearMissRel * diameter;
+  const double near = kNearMissRel * model.facts.diameter;
   double worst = 0;
   const auto note = [&](double miss) {
     if (miss < near) worst = std::max(worst, miss);
   };
-  if (const auto* plc = std::get_if<Plc>(&model)) {
-    const PointTree tree(plc->vertices);
-    for (const Point3& p : plc->vertices) note(tree.nearest(rotate(p)).distance);
+  if (const auto* plc = std::get_if<PlcModel>(&model.geometry)) {
+    const PointTree tree(plc->given->vertices);
+    for (const Point3& p : plc->given->vertices) note(tree.nearest(rotate(p)).distance);
   }
-  if (const auto* pslg = std::get_if<Pslg>(&model)) {
-    const std::vector<Point3> vertices = raised(pslg->vertices);
+  if (const auto* planar_model = std::get_if<PlanarModel>(&model.geometry)) {
+    const Pslg& pslg = *planar_model->pslg;
+    const std::vector<char> needed = vertices_of_domain(*planar_model);
+    std::vector<Point3> vertices;
+    for (std::size_t v = 0; v < needed.size(); ++v) {
+      if (needed[v] != 0) vertices.push_back({pslg.vertices[v].x, pslg.vertices[v].y, 0});
+    }
     std::vector<IndexedSegment> segments;
-    for (const PslgSegment& s : pslg->segments) {
-      segments.push_back({pslg->vertices[at(s.a)], pslg->vertices[at(s.b)]});
+    const plane::PlanarMap& map = planar_model->subdomains.map;
+    for (std::size_t p = 0; p < map.pieces.size(); ++p) {
+      if (!planar_model->meshed_beside(p)) continue;
+      segments.push_back({pslg.vertices[at(map.pieces[p].a)], pslg.vertices[at(map.pieces[p].b)]});
     }
     const PointTree tree(vertices);
     const SegmentIndex index(segments);

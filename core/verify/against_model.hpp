@@ -19,9 +19,16 @@ namespace symcell::internal {
 struct PlanarModel {
   const Pslg* pslg = nullptr;
   plane::Subdomains subdomains;
+
+  // Whether the domain is on a side of the map's piece.
+  [[nodiscard]] bool meshed_beside(std::size_t piece) const {
+    const auto half_edge = static_cast<std::int32_t>(2 * piece);
+    return subdomains.left_of(half_edge).meshed || subdomains.left_of(half_edge + 1).meshed;
+  }
 };
 
 struct PlcModel {
+  const Plc* given = nullptr;
   solid::ValidPlc valid;
   double off_plane = 0;  // farthest a facet's vertices lie off its plane
 
@@ -53,10 +60,13 @@ struct ExaminedModel {
 // Cost: O(N log N).
 [[nodiscard]] Result<ExaminedModel> examine_model(const Model& model);
 
-// By how much vertices of the model miss their images under `rotate`, near misses only; of a
-// surface 0, as its vertices need not be symmetric.
-[[nodiscard]] double model_asymmetry(const Model& model,
-                                     double diameter,
+// Per vertex whether it belongs to the domain: at a segment with the domain on a side, or loose
+// within it. Others, where a dangling segment may end, need not be nodes.
+[[nodiscard]] std::vector<char> vertices_of_domain(const PlanarModel& model);
+
+// By how much vertices of the model, of a PSLG those of its domain, miss their images under `rotate`,
+// near misses only; of a surface 0, as its vertices need not be symmetric.
+[[nodiscard]] double model_asymmetry(const ExaminedModel& model,
                                      const std::function<Point3(const Point3&)>& rotate);
 
 // Triangles of a solid model, each with or without material on the side its normal looks to

@@ -61,6 +61,7 @@ class PlcChecker {
   // A part of a facet that segments bound.
   struct Part {
     std::int32_t facet = 0;  // of the input
+    Point3 origin, normal;   // of the facet's plane
     double area = 0;
     double covered = 0;   // by faces of the mesh
     bool needed = false;  // meshed on a side
@@ -87,6 +88,8 @@ class PlcChecker {
         const std::size_t index = first + at(facet.triangles.piece[t]);
         Part& part = parts_[index];
         part.facet = facet.source;
+        part.origin = model_.points[at(facet.graph.segments.front()[0])];
+        part.normal = (1 / length(facet.graph.normal)) * facet.graph.normal;
         part.area += area_of(corners(facet.triangles.triangles[t]));
         part.needed = before || behind;
         part.bounds = before != behind;
@@ -122,18 +125,18 @@ class PlcChecker {
       if (!all) continue;
       const std::array<Point3, 3> p = full_.triangle(g);
       const auto hit = tree.nearest((1.0 / 3) * (p[0] + p[1] + p[2]), tolerance_, last);
-      if (hit.triangle < 0 || !in_plane(p, corners(triangles_[at(hit.triangle)]))) continue;
-      part_of_[g] = part_of_triangle_[at(hit.triangle)];
-      parts_[at(part_of_[g])].covered += area_of(p);
+      if (hit.triangle < 0) continue;
+      const std::int32_t part = part_of_triangle_[at(hit.triangle)];
+      if (!in_plane(p, parts_[at(part)])) continue;
+      part_of_[g] = part;
+      parts_[at(part)].covered += area_of(p);
     }
   }
 
-  [[nodiscard]] bool in_plane(const std::array<Point3, 3>& p,
-                              const std::array<Point3, 3>& plane) const {
-    const Point3 normal = area_normal(plane[0], plane[1], plane[2]);
-    const double size = length(normal);
+  // The facet's own plane, as thin triangles of it tell theirs badly.
+  [[nodiscard]] bool in_plane(const std::array<Point3, 3>& p, const Part& part) const {
     return std::ranges::all_of(p, [&](const Point3& corner) {
-      return std::abs(dot(normal, corner - plane[0])) <= 2 * tolerance_ * size;
+      return std::abs(dot(part.normal, corner - part.origin)) <= 2 * tolerance_;
     });
   }
 

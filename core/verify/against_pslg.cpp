@@ -15,6 +15,7 @@ class PlanarChecker {
  public:
   PlanarChecker(const FacetedMesh& full, const PlanarModel& model, double tolerance, Checks& checks)
       : full_(full),
+        given_(model),
         pslg_(*model.pslg),
         model_(model.subdomains),
         tolerance_(tolerance),
@@ -37,27 +38,9 @@ class PlanarChecker {
     return model_.left_of(half_edge).meshed;
   }
 
-  // Vertices of the domain, loose ones among them; those outside, where a dangling segment may
-  // end, need not be nodes.
-  [[nodiscard]] std::vector<char> needed_vertices() const {
-    std::vector<char> needed(pslg_.vertices.size(), 0);
-    const plane::PlanarMap& map = model_.map;
-    for (std::size_t p = 0; p < map.pieces.size(); ++p) {
-      const auto half_edge = static_cast<std::int32_t>(2 * p);
-      if (!meshed(half_edge) && !meshed(half_edge + 1)) continue;
-      needed[static_cast<std::size_t>(map.pieces[p].a)] = 1;
-      needed[static_cast<std::size_t>(map.pieces[p].b)] = 1;
-    }
-    for (std::size_t v = 0; v < needed.size(); ++v) {
-      const std::int32_t face = map.vertex_face[v];
-      if (face >= 0 && model_.faces[static_cast<std::size_t>(face)].meshed) needed[v] = 1;
-    }
-    return needed;
-  }
-
   void match_vertices() {
     const PointTree tree(full_.mesh.points);
-    const std::vector<char> needed = needed_vertices();
+    const std::vector<char> needed = vertices_of_domain(given_);
     node_of_.assign(needed.size(), -1);
     Flaws flaws;
     for (std::size_t v = 0; v < needed.size(); ++v) {
@@ -137,6 +120,7 @@ class PlanarChecker {
   }
 
   const FacetedMesh& full_;
+  const PlanarModel& given_;
   const Pslg& pslg_;
   const plane::Subdomains& model_;
   double tolerance_;

@@ -19,8 +19,8 @@ std::string node_name(std::size_t node) {
 
 class PairChecker {
  public:
-  PairChecker(const MeshData& cell, const Turns& turns, double tolerance)
-      : cell_(cell), pairs_(cell.lower_to_higher), turns_(turns), tolerance_(tolerance) {}
+  PairChecker(const MeshData& cell, const Turns& turns, const PairTolerances& tolerances)
+      : cell_(cell), pairs_(cell.lower_to_higher), turns_(turns), tolerances_(tolerances) {}
 
   bool run(Checks& checks) {
     if (pairs_.size() != cell_.points.size()) {
@@ -52,7 +52,7 @@ class PairChecker {
       ++count;
       const double off = distance(turns_.rotated(cell_.points[i], 1), cell_.points[at(j)]);
       worst = std::max(worst, off);
-      if (off <= tolerance_) continue;
+      if (off <= tolerances_.told) continue;
       flaws.note([&] { return node_name(i) + " is off its pair by " + shown(off); });
     }
     return flaws.report(checks, "cell.pairs",
@@ -69,14 +69,18 @@ class PairChecker {
     return flaws.report(checks, "cell.pairs_injective");
   }
 
+  [[nodiscard]] bool own_pair(std::size_t node) const {
+    return pairs_[node] >= 0 && at(pairs_[node]) == node;
+  }
   [[nodiscard]] bool on_axis(std::size_t node) const {
-    return turns_.from_axis(cell_.points[node]) <= tolerance_;
+    return turns_.from_axis(cell_.points[node]) <=
+           (own_pair(node) ? tolerances_.told : tolerances_.untold);
   }
 
   bool look_at_axis(Checks& checks) const {
     Flaws flaws;
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
-      const bool itself = pairs_[i] >= 0 && at(pairs_[i]) == i;
+      const bool itself = own_pair(i);
       if (on_axis(i) == itself) continue;
       flaws.note([&] {
         return node_name(i) + (itself ? " is its own pair but not on the axis"
@@ -93,7 +97,7 @@ class PairChecker {
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       if (on_axis(i)) continue;
       const auto hit = tree.nearest(turns_.rotated(cell_.points[i], 1));
-      if (hit.distance > tolerance_ || pairs_[i] == hit.point) continue;
+      if (hit.distance > tolerances_.untold || pairs_[i] == hit.point) continue;
       // Half a turn goes both ways.
       if (turns_.fold() == 2 && at(pairs_[at(hit.point)]) == i) continue;
       flaws.note([&] {
@@ -107,7 +111,7 @@ class PairChecker {
   const MeshData& cell_;
   const std::vector<std::int32_t>& pairs_;
   const Turns& turns_;
-  double tolerance_;
+  PairTolerances tolerances_;
 };
 
 class BoundFinder {
@@ -222,8 +226,11 @@ Turns::Turns(const MeshData& cell)
   if (cell.dimension == 2) frame_.origin.z = 0;
 }
 
-bool check_pairs(const MeshData& cell, const Turns& turns, double tolerance, Checks& checks) {
-  return PairChecker(cell, turns, tolerance).run(checks);
+bool check_pairs(const MeshData& cell,
+                 const Turns& turns,
+                 const PairTolerances& tolerances,
+                 Checks& checks) {
+  return PairChecker(cell, turns, tolerances).run(checks);
 }
 
 CellBounds check_bounds(const FacetedMesh& cell,

@@ -36,12 +36,13 @@ class CellInFull {
       const std::int32_t* there = &full_.mesh.elements[e * k];
       const std::int32_t* here = &cell_.mesh.elements[at(full_.mesh.cell_elements[e]) * k];
       for (std::size_t i = 0; i < corners; ++i) {
-        for (std::size_t j = 0; j < corners; ++j) {
-          const std::size_t turned = (i + j) % corners;
-          if (distance(cell_.point(here[i]), full_.point(there[turned])) > tolerance_) continue;
-          result[at(here[i])] = there[turned];
-          break;
-        }
+        const auto off = [&](std::int32_t node) {
+          return distance(cell_.point(here[i]), full_.point(node));
+        };
+        const std::int32_t nearest =
+            *std::min_element(there, there + corners,
+                              [&](std::int32_t p, std::int32_t q) { return off(p) < off(q); });
+        if (off(nearest) <= tolerance_) result[at(here[i])] = nearest;
       }
     }
     return result;

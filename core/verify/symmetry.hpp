@@ -36,9 +36,19 @@ struct CellBounds {
   std::vector<std::size_t> higher;
 };
 
+// How far what is told to be one may be apart, and how near what is not told so has to be for it to
+// be one all the same.
+struct PairTolerances {
+  double told = 0;
+  double untold = 0;  // at most `told`
+};
+
 // cell.pairs, .pairs_injective, .axis_self, .pairs_complete.  False if the full mesh cannot be
 // restored.
-bool check_pairs(const MeshData& cell, const Turns& turns, double tolerance, Checks& checks);
+bool check_pairs(const MeshData& cell,
+                 const Turns& turns,
+                 const PairTolerances& tolerances,
+                 Checks& checks);
 
 // cell.bounds, .bounds_nodes.  Requires: check_pairs passed.
 CellBounds check_bounds(const FacetedMesh& cell,

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/geometry/resolution.hpp"
 #include "core/verify/against_model.hpp"
 #include "core/verify/support.hpp"
 #include "core/verify/symmetry.hpp"
@@ -18,16 +19,18 @@ using internal::FacetedMesh;
 using internal::ModelPinches;
 using internal::shown;
 
-// Nodes closer than this share of the diameter are one node written twice.
-constexpr double kDuplicateRel = 1e-10;
 // A mesh is symmetric and the model only nearly: nodes may be off by the model's own asymmetry and
 // by as much again where it was averaged, on either side of a vertex.
 constexpr double kAsymmetries = 4;
 // Rounding of a sum over all elements, and what a tessellation may differ by, as shares.
 constexpr double kExactMeasureRel = 1e-9;
 constexpr double kSurfaceMeasureRel = 1e-2;
-// Units in the last place that a correct mesh far from the origin may be off by.
+// Units in the last place, of the largest coordinate, that nodes of a correct mesh may be off by.
 constexpr double kRoundings = 16;
+// The same of what is one but written twice, as by two rotations that take it to one place. A quarter
+// of what validation takes vertices of a model for one within, so that the edges which refinement
+// makes beside the nearest two that it lets pass are no faults.
+constexpr double kRoundingsApart = 8;
 
 class Verifier {
  public:
@@ -43,13 +46,17 @@ class Verifier {
     const internal::Turns turns(cell_);
     examine_model();
     diameter_ = the_diameter(turns);
-    tolerance_ = std::max(options_.tolerance_rel * diameter_, rounding());
+    magnitude_ = magnitude();
+    const double rounding = std::numeric_limits<double>::epsilon() * magnitude_;
+    apart_ = kRoundingsApart * rounding;
+    rounding_ = kRoundings * rounding;
+    tolerance_ = std::max(options_.tolerance_rel * diameter_, rounding_);
     if (model_known_) set_model_tolerance(turns);
     const FacetedMesh cell(cell_);
-    if (!internal::check_elements(cell, "cell", duplicate_tolerance(), checks_)) return;
+    if (!internal::check_elements(cell, "cell", apart_, checks_)) return;
     internal::tell_quality(cell_, checks_);
     internal::check_links(cell, "cell", pinches(), checks_);
-    if (!internal::check_pairs(cell_, turns, tolerance_, checks_)) return;
+    if (!internal::check_pairs(cell_, turns, {tolerance_, apart_}, checks_)) return;
     const internal::CellBounds bounds =
         internal::check_bounds(cell, turns, tolerance_, pinches(), checks_);
     if (full_ != nullptr) {
@@ -100,24 +107,20 @@ class Verifier {
     return std::hypot(2 * reach, high - low);
   }
 
-  [[nodiscard]] double rounding() const {
+  [[nodiscard]] double magnitude() const {
     const auto size = [](const Point3& p) {
       return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     };
     double largest = size(cell_.axis_origin);
     for (const Point3& p : cell_.points) largest = std::max(largest, size(p));
-    return kRoundings * std::numeric_limits<double>::epsilon() * largest;
-  }
-
-  [[nodiscard]] double duplicate_tolerance() const {
-    return std::min(tolerance_, kDuplicateRel * diameter_);
+    return largest;
   }
 
   [[nodiscard]] bool is_surface() const { return kind_of(*model_) == ModelKind::kSurface; }
 
   void set_model_tolerance(const internal::Turns& turns) {
     if (cell_.fold > 1) {
-      asymmetry_ = internal::model_asymmetry(*model_, diameter_,
+      asymmetry_ = internal::model_asymmetry(examined_,
                                              [&](const Point3& p) { return turns.rotated(p, 1); });
     }
     if (options_.model_tolerance_rel) {
@@ -127,7 +130,9 @@ class Verifier {
     } else {
       model_tolerance_ = kAsymmetries * asymmetry_;
     }
-    model_tolerance_ = std::max(model_tolerance_, tolerance_);
+    // Facets have planes of their own, which their vertices lie in to within the resolution only.
+    const double least = plane() ? rounding_ : resolution_of(diameter_, magnitude_);
+    model_tolerance_ = std::max(model_tolerance_, least);
     examined_.facts.pinches.tolerance = model_tolerance_;
   }
 
@@ -140,12 +145,12 @@ class Verifier {
                     const MeshData& mesh) {
     if (!internal::check_fields(mesh, "full", checks_)) return;
     const FacetedMesh full(mesh);
-    if (!internal::check_elements(full, "full", duplicate_tolerance(), checks_)) return;
+    if (!internal::check_elements(full, "full", apart_, checks_)) return;
     const bool copies =
         internal::check_copies(cell_, mesh, turns, tolerance_, every_region(), checks_);
     if (copies) internal::check_cell_in_full(cell, bounds, full, tolerance_, checks_);
     internal::check_links(full, "full", pinches(), checks_);
-    internal::check_hanging_nodes(full, tolerance_, checks_);
+    internal::check_hanging_nodes(full, apart_, checks_);
     check_pieces(full);
     check_measure(mesh);
     internal::tell_delaunay(full, check_full_model(full), checks_);
@@ -217,7 +222,12 @@ class Verifier {
   ExaminedModel examined_;
   bool model_known_ = false;
   double diameter_ = 0;
-  double tolerance_ = 0;        // of pairs, copies and hanging nodes
+  double magnitude_ = 0;  // largest absolute coordinate
+  // Two nodes, or a node and a facet, that are farther from each other may be features of a sound
+  // model, however small they are beside it.
+  double apart_ = 0;
+  double rounding_ = 0;
+  double tolerance_ = 0;        // of pairs and copies
   double model_tolerance_ = 0;  // of nodes against the model
   double asymmetry_ = 0;
 };

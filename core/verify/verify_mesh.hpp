@@ -85,8 +85,8 @@ struct VerifyReport {
 struct VerifyOptions {
   double tolerance_rel = 1e-9;  // of pairs and copies, relative to the model's diameter
   // Of nodes against the model, which symmetrising moves; nullopt: of a surface
-  // kSurfaceSymmetryToleranceRel, of a PSLG
-  // or PLC four times the model's own asymmetry, at least tolerance_rel.
+  // kSurfaceSymmetryToleranceRel, of a PSLG or PLC four times the model's own asymmetry, which is
+  // nothing where the fold is 1. Never less than rounding, nor in space than the resolution.
   std::optional<double> model_tolerance_rel;
   std::optional<double> model_measure;  // area or volume; nullopt: computed from the model
   std::size_t most_restored_nodes = 200'000'000;  // beyond: full.* without a file are skipped

@@ -18,6 +18,10 @@
 namespace symcell::plane {
 namespace {
 
+// Share of the diameter within which a vertex and an image of another are a near miss for whoever
+// compares a mesh with its model.
+constexpr double kNearMissRel = 1e-5;
+
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
@@ -147,7 +151,7 @@ class Symmetriser {
           return std::move(*best);
         }
         return fail(ErrorCode::kNotSymmetric,
-                    "vertices have copies that stand beside others by about the tolerance");
+                    "vertices have copies that stand beside others and are near misses of them");
       }
     }
   }
@@ -159,9 +163,8 @@ class Symmetriser {
     return all > prepared_.points.size() + 1;  // a centre may be new, cut into a segment
   }
 
-  // Whether positions that differ by about the tolerance, which is no more than noise unless it was
-  // given, would be several vertices of the result and are one of the model: no mesh of such spots
-  // can be distinguished from a wrong one.
+  // Whether positions that are but a near miss of each other would be several vertices of the result
+  // and are one of the model: no mesh of such spots can be distinguished from a wrong one.
   [[nodiscard]] bool has_copies_beside_vertices(const SymmetricPslg& pslg) const {
     const RotationTable rotations(pslg.fold);
     std::vector<Point3> lifted, given;
@@ -176,7 +179,9 @@ class Symmetriser {
       given.push_back({p.x - pslg.centre.x, p.y - pslg.centre.y, 0});
     }
     const PointTree all(lifted), model(given);
-    const Point3 reach{2 * tolerance_, 2 * tolerance_, 0};
+    // On either side of what counts as a near miss vertices may have been moved by the tolerance.
+    const double side = kNearMissRel * prepared_.diameter + 2 * tolerance_;
+    const Point3 reach{side, side, 0};
     return std::any_of(given.begin(), given.end(), [&](const Point3& p) {
       std::int64_t more = 0;
       all.within_box(p - reach, p + reach, [&](std::int32_t) { ++more; });

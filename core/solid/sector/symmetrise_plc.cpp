@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/base/assert.hpp"
-#include "core/geometry/resolution.hpp"
 #include "core/solid/plc/validate_plc.hpp"
 #include "core/solid/sector/plc_sector.hpp"
 #include "core/solid/sector/symmetrise.hpp"
@@ -22,10 +21,7 @@ Result<SymmetricPlc> find_and_average(const ValidPlc& valid,
   const PlcComplex& complex = valid.complex;
   auto fit = find_plc_symmetry(complex, valid.cells, options, ladder, context);
   if (!fit) return error_of(fit);
-  const double tolerance = std::max(
-      options.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel) * complex.diameter,
-      resolution_of(complex.diameter, complex.magnitude));
-  auto plc = make_symmetric_plc(complex, *fit, tolerance, options.ignore_markers, context);
+  auto plc = make_symmetric_plc(complex, *fit, options.ignore_markers, context);
   if (!plc) return plc;
   plc->volume = valid.cells.volume;
   plc->symmetry.fold_detected = !options.fold;

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "core/geometry/resolution.hpp"
+
 namespace symcell::solid {
 namespace {
 
@@ -14,8 +16,12 @@ std::size_t at(std::int32_t i) {
 
 class AxisCutter {
  public:
-  AxisCutter(double tolerance, SymmetricPlc& plc, ExecutionContext& context)
-      : tolerance_(tolerance), plc_(plc), complex_(plc.complex), context_(context) {}
+  AxisCutter(const ComplexImage& image, SymmetricPlc& plc, ExecutionContext& context)
+      : image_(image),
+        plc_(plc),
+        complex_(plc.complex),
+        context_(context),
+        resolution_(resolution_of(complex_.diameter, complex_.magnitude)) {}
 
   Result<void> run() {
     for (std::size_t i = 0; i < plc_.vertex.size(); ++i) {
@@ -27,7 +33,7 @@ class AxisCutter {
       if (f % 64 == 0) {
         SYMCELL_TRY(context_.check());
       }
-      SYMCELL_TRY(cut_facet(complex_.facets[f]));
+      SYMCELL_TRY(cut_facet(static_cast<std::int32_t>(f)));
     }
     if (changed_) rebuild_edges();
     return {};
@@ -47,7 +53,7 @@ class AxisCutter {
   // The point of the axis at that height, a new one where there is none.
   std::int32_t axis_point(double z) {
     for (const std::int32_t i : axis_points_) {
-      if (std::abs(complex_.points[at(i)].z - z) <= tolerance_) return i;
+      if (std::abs(complex_.points[at(i)].z - z) <= resolution_) return i;
     }
     const auto point = static_cast<std::int32_t>(complex_.points.size());
     complex_.points.push_back({0, 0, z});
@@ -63,21 +69,18 @@ class AxisCutter {
     splits_.assign(complex_.edges.size(), -1);
     for (std::size_t e = 0; e < complex_.edges.size(); ++e) {
       const ComplexEdge& edge = complex_.edges[e];
-      if (axial(edge.a) || axial(edge.b)) continue;
+      const bool turned = image_.edge[e] == static_cast<std::int32_t>(e);
+      if (!turned || axial(edge.a) || axial(edge.b)) continue;
+      // Half a turn swaps the ends, so that the middle is on the axis.
       const Point3 a = complex_.points[at(edge.a)];
       const Point3 b = complex_.points[at(edge.b)];
-      const Point2 base{a.x, a.y};
-      const Point2 along{b.x - a.x, b.y - a.y};
-      const double squared = squared_length(along);
-      if (!(squared > 0)) continue;
-      const double t = -dot(base, along) / squared;
-      if (!(t > 0 && t < 1) || length(base + t * along) > tolerance_) continue;
-      splits_[e] = axis_point(a.z + t * (b.z - a.z));
+      splits_[e] = axis_point(0.5 * (a.z + b.z));
       changed_ = true;
     }
   }
 
-  Result<void> cut_facet(ComplexFacet& facet) {
+  Result<void> cut_facet(std::int32_t index) {
+    ComplexFacet& facet = complex_.facets[at(index)];
     bool touched = false;
     std::vector<IndexPair> segments;
     for (std::size_t s = 0; s < facet.graph.segments.size(); ++s) {
@@ -92,10 +95,10 @@ class AxisCutter {
       segments.push_back({std::min(ends[1], middle), std::max(ends[1], middle)});
     }
     if (touched) facet.graph.segments = std::move(segments);
-    if (contains_axis_direction(facet)) {
-      if (add_axis_segments(facet)) touched = true;
-    } else if (add_piercing_point(facet)) {
-      touched = true;
+    if (image_.facet[at(index)] == index) {
+      constexpr double kUpright = 0.5;  // the normal is along the axis or normal to it
+      const bool level = std::abs(facet.graph.normal.z) >= kUpright;
+      if (level ? add_piercing_point(facet) : add_axis_segments(facet)) touched = true;
     }
     if (!touched) return {};
     changed_ = true;
@@ -110,14 +113,6 @@ class AxisCutter {
     }
     facet.triangles = std::move(*triangles);
     return {};
-  }
-
-  // Whether the facet's plane contains the axis, to within the tolerance over the facet.
-  [[nodiscard]] bool contains_axis_direction(const ComplexFacet& facet) const {
-    const Point3 n = facet.graph.normal;
-    const Point3 p = complex_.points[at(facet.graph.segments.front()[0])];
-    return std::abs(n.z) * complex_.diameter <= 2 * tolerance_ &&
-           std::abs(n.x * p.x + n.y * p.y) <= 2 * tolerance_;
   }
 
   bool add_axis_segments(ComplexFacet& facet) {
@@ -154,20 +149,15 @@ class AxisCutter {
   }
 
   bool add_piercing_point(ComplexFacet& facet) {
-    const Point3 n = facet.graph.normal;
-    constexpr double kParallel = 1e-9;  // such a facet's plane meets the axis nowhere of interest
-    if (std::abs(n.z) <= kParallel) return false;
-    const Point3 p = complex_.points[at(facet.graph.segments.front()[0])];
-    const double z = p.z + (n.x * p.x + n.y * p.y) / n.z;
-    const auto near = [&](std::int32_t i) {
-      return axial(i) && std::abs(complex_.points[at(i)].z - z) <= 2 * tolerance_;
-    };
     for (const IndexPair& s : facet.graph.segments) {
-      if (near(s[0]) || near(s[1])) return false;
+      if (axial(s[0]) || axial(s[1])) return false;
     }
     for (const std::int32_t i : facet.graph.points) {
-      if (near(i)) return false;
+      if (axial(i)) return false;
     }
+    const Point3 n = facet.graph.normal;
+    const Point3 p = complex_.points[at(facet.graph.segments.front()[0])];
+    const double z = p.z + (n.x * p.x + n.y * p.y) / n.z;
     if (!covers(complex_.points, facet, {0, 0, z})) return false;
     facet.graph.points.push_back(axis_point(z));
     return true;
@@ -189,10 +179,11 @@ class AxisCutter {
     collect_facet_edges(complex_);
   }
 
-  double tolerance_;
+  const ComplexImage& image_;
   SymmetricPlc& plc_;
   PlcComplex& complex_;
   ExecutionContext& context_;
+  double resolution_;                      // points of the axis nearer than this are one
   std::vector<std::int32_t> axis_points_;  // by height
   std::vector<std::int32_t> splits_;       // per edge: the axis point that cuts it, -1: none
   bool changed_ = false;
@@ -200,8 +191,8 @@ class AxisCutter {
 
 }  // namespace
 
-Result<void> cut_at_axis(double tolerance, SymmetricPlc& plc, ExecutionContext& context) {
-  return AxisCutter(tolerance, plc, context).run();
+Result<void> cut_at_axis(const ComplexImage& image, SymmetricPlc& plc, ExecutionContext& context) {
+  return AxisCutter(image, plc, context).run();
 }
 
 }  // namespace symcell::solid

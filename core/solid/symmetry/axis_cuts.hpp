@@ -7,10 +7,12 @@
 
 namespace symcell::solid {
 
-// Cuts segments that cross the axis (pass it within `tolerance`) there, gives facets pierced by it
-// a point there, and facets that contain a piece of it that piece as a segment. Requires: vertices,
-// orbits and positions in the local frame are set. Errors: as make_plc_complex.
-[[nodiscard]] Result<void> cut_at_axis(double tolerance,
+// Cuts segments that cross the axis there, gives facets pierced by it a point there, and facets that
+// contain a piece of it that piece as a segment. All these are their own images: what met the axis
+// between its ends and was not would cross its image there. So `image`, of the complex as it is, tells
+// them, and no tolerance takes what only passes near the axis for them.
+// Requires: vertices, orbits and positions in the local frame are set. Errors: as make_plc_complex.
+[[nodiscard]] Result<void> cut_at_axis(const ComplexImage& image,
                                        SymmetricPlc& plc,
                                        ExecutionContext& context);
 

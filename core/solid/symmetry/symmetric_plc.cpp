@@ -136,7 +136,6 @@ void level_turning_facets(SymmetricPlc& plc) {
 
 Result<SymmetricPlc> make_symmetric_plc(const PlcComplex& complex,
                                         const PlcFit& fit,
-                                        double tolerance,
                                         bool ignore_markers,
                                         ExecutionContext& context) {
   SymmetricPlc plc;
@@ -152,10 +151,14 @@ Result<SymmetricPlc> make_symmetric_plc(const PlcComplex& complex,
   plc.orbit_points = average_orbits(complex, fit, rotations);
   move_to_local(fit.frame, plc.complex);
   place_points(rotations, plc);
-  if (fit.fold > 1) {
-    SYMCELL_TRY(cut_at_axis(tolerance, plc, context));
+  const auto map = [&] {
+    return map_complex(plc.complex, point_images(plc, fit.fold), ignore_markers);
+  };
+  ComplexImage image = map();
+  if (fit.fold > 1 && !image.mismatch) {
+    SYMCELL_TRY(cut_at_axis(image, plc, context));
+    image = map();
   }
-  const ComplexImage image = map_complex(plc.complex, point_images(plc, fit.fold), ignore_markers);
   if (image.mismatch) {
     return fail(ErrorCode::kNotSymmetric,
                 "cut at its axis the model is not symmetric: " + *image.mismatch, image.elements);

@@ -43,11 +43,10 @@ struct SymmetricPlc {
 };
 
 // Averages every orbit of vertices and cuts what meets the axis.
-// `fit`: accepted.  `tolerance`: input units.  Sets fold, frame, error and diameter of `symmetry`.
+// `fit`: accepted.  Sets fold, frame, error and diameter of `symmetry`.
 // Errors: kNotSymmetric, kSelfIntersection where the averaged model is not sound; limits.
 [[nodiscard]] Result<SymmetricPlc> make_symmetric_plc(const PlcComplex& complex,
                                                       const PlcFit& fit,
-                                                      double tolerance,
                                                       bool ignore_markers,
                                                       ExecutionContext& context);
 

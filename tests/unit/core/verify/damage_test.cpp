@@ -268,10 +268,10 @@ TEST(VerifyDamage, Vertices) {
 }
 
 TEST(VerifyDamage, Duplicates) {
-  // Two cubes that share a place and no node: the same place within a ten-thousand-millionth.
+  // Two cubes that share a place and no node: the same place but for rounding.
   MeshData mesh = test::cube_mesh(all_blocks({2, 1, 1}));
   const std::int32_t shared = mesh.elements[3];  // the corner opposite the first one
-  mesh.points.push_back(mesh.points[static_cast<std::size_t>(shared)] + Point3{1e-11, 0, 0});
+  mesh.points.push_back(mesh.points[static_cast<std::size_t>(shared)] + Point3{1e-15, 0, 0});
   mesh.lower_to_higher.push_back(-1);
   for (std::size_t i = 24; i < mesh.elements.size(); ++i) {
     if (mesh.elements[i] == shared) {

@@ -114,6 +114,20 @@ TEST(Symmetrise, OneVertexOffByMoreThanTheToleranceForbidsTheFold) {
   EXPECT_EQ(run(pslg, wider)->fold, 12);
 }
 
+// Along a side of many the shape hardly changes.
+TEST(Symmetrise, OneVertexOffByANearMissForbidsTheFold) {
+  for (const double off : {3.4e-5, 1e-4, 2.5e-4}) {  // up to 0.9e-5 of the diameter
+    SCOPED_TRACE(off);
+    Pslg pslg = regular_ring(96, 10, 4);
+    const Point2 side = pslg.vertices[12] - pslg.vertices[11];
+    pslg.vertices[11] = pslg.vertices[11] + (off / length(side)) * side;
+    const auto found = run(pslg);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(found->orbit_points.size() * static_cast<std::size_t>(found->fold),
+              pslg.vertices.size());
+  }
+}
+
 TEST(Symmetrise, CoordinatesRoundedToSixDigitsPass) {
   Pslg pslg = gear(24, 2, 1.6, 0.4);
   for (Point2& p : pslg.vertices) p = {std::round(p.x * 1e6) / 1e6, std::round(p.y * 1e6) / 1e6};
