@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "core/base/stopwatch.hpp"
 #include "core/plane/input/validate_pslg.hpp"
@@ -14,12 +15,23 @@
 namespace symcell {
 namespace {
 
+std::vector<Warning> warnings_of(const plane::SymmetricPslg& symmetric) {
+  return symmetric.warnings;
+}
+
+std::vector<Warning> warnings_of(const std::unique_ptr<solid::SectorSource>& source) {
+  std::vector<Warning> warnings = source->symmetry().warnings;
+  if (!source->repairs().empty()) warnings.push_back(surface_repaired_warning(source->repairs()));
+  return warnings;
+}
+
 void record(const plane::SymmetricPslg& symmetric, Statistics& statistics) {
   Statistics::Symmetry& reported = statistics.symmetry;
   reported.fold = symmetric.fold;
   reported.axis_origin = {symmetric.centre.x, symmetric.centre.y, 0};
   reported.error_rel = symmetric.symmetry_error_rel;
   reported.detected = symmetric.fold_detected;
+  statistics.warnings = warnings_of(symmetric);
 }
 
 void record(const std::unique_ptr<solid::SectorSource>& source, Statistics& statistics) {
@@ -31,28 +43,38 @@ void record(const std::unique_ptr<solid::SectorSource>& source, Statistics& stat
   reported.error_rel = found.error_rel;
   reported.detected = found.fold_detected;
   statistics.repairs = source->repairs();
+  statistics.warnings = warnings_of(source);
 }
 
 // `symmetrise` makes the model symmetric, `mesh` meshes what that gives.
 template <class Symmetrise, class Mesh>
-Result<MeshOutcome> run(const Symmetrise& symmetrise, const Mesh& mesh, ExecutionContext& context) {
+Result<MeshOutcome> run(const Symmetrise& symmetrise,
+                        const Mesh& mesh,
+                        bool strict,
+                        ExecutionContext& context) {
   Stopwatch total, watch;
   context.report(Phase::kSymmetry, 0.02);
   const auto symmetric = symmetrise();
   if (!symmetric) return error_of(symmetric);
+  SYMCELL_TRY(check_strict(strict, warnings_of(*symmetric)));
   const double symmetry_ms = watch.lap();
   Result<MeshOutcome> outcome = mesh(*symmetric);
   if (!outcome) return outcome;
   Statistics& statistics = outcome->statistics;
   record(*symmetric, statistics);
+  if (auto exempt = exempt_elements_warning(statistics.exempt, statistics.cell.elements)) {
+    statistics.warnings.push_back(std::move(*exempt));
+    SYMCELL_TRY(check_strict(strict, statistics.warnings));
+  }
   statistics.timings_ms.symmetry = symmetry_ms;
   statistics.timings_ms.total = total.lap();
   return outcome;
 }
 
 template <class Found>
-Result<Inspection> widened(Result<Found> found) {
+Result<Inspection> checked(Result<Found> found, bool strict) {
   if (!found) return error_of(found);
+  SYMCELL_TRY(check_strict(strict, found->warnings));
   return Inspection(std::move(*found));
 }
 
@@ -69,16 +91,18 @@ Result<MeshOutcome> mesh_model(const Model& model,
     const auto mesh = [&](const plane::SymmetricPslg& symmetric) {
       return plane::mesh_pslg(symmetric, options, context);
     };
-    return run(symmetrise, mesh, context);
+    return run(symmetrise, mesh, options.strict, context);
   }
   const auto mesh = [&](const std::unique_ptr<solid::SectorSource>& source) {
     return solid::mesh_solid(*source, options, context);
   };
   if (const auto* plc = std::get_if<Plc>(&model)) {
-    return run([&] { return solid::symmetrise_plc(*plc, options, context); }, mesh, context);
+    return run([&] { return solid::symmetrise_plc(*plc, options, context); }, mesh, options.strict,
+               context);
   }
   const auto& surface = std::get<TriangleSurface>(model);
-  return run([&] { return solid::symmetrise_surface(surface, options, context); }, mesh, context);
+  return run([&] { return solid::symmetrise_surface(surface, options, context); }, mesh,
+             options.strict, context);
 }
 
 Result<Inspection> inspect_model(const Model& model,
@@ -86,12 +110,13 @@ Result<Inspection> inspect_model(const Model& model,
                                  ExecutionContext& context) {
   if (const auto* pslg = std::get_if<Pslg>(&model)) {
     SYMCELL_TRY(plane::validate_pslg(*pslg, context));
-    return widened(plane::inspect_pslg(*pslg, options, context));
+    return checked(plane::inspect_pslg(*pslg, options, context), options.strict);
   }
   if (const auto* plc = std::get_if<Plc>(&model)) {
-    return widened(solid::inspect_plc(*plc, options, context));
+    return checked(solid::inspect_plc(*plc, options, context), options.strict);
   }
-  return widened(solid::inspect_surface(std::get<TriangleSurface>(model), options, context));
+  return checked(solid::inspect_surface(std::get<TriangleSurface>(model), options, context),
+                 options.strict);
 }
 
 }  // namespace symcell
