@@ -37,6 +37,11 @@ double angle_of(std::int32_t fold) {
   return 2 * std::numbers::pi / fold;
 }
 
+// Sectors that turn by about the first odd angle.
+double odd_angle_of(std::int32_t fold) {
+  return std::max(1.0, std::round(kOddAngles.front() * fold)) * angle_of(fold);
+}
+
 double reach_of(double tolerance, double diameter) {
   return std::min(kNearTolerances * tolerance, kMostToleranceRel * diameter);
 }
@@ -46,7 +51,12 @@ double reach_of(double tolerance, double diameter) {
 SymmetryAxis AxisLadders::refined(const SymmetryAxis& axis,
                                   std::int32_t fold,
                                   double tolerance) const {
-  const double angle = angle_of(fold);
+  return refined_by(angle_of(fold), axis, tolerance);
+}
+
+SymmetryAxis AxisLadders::refined_by(double angle,
+                                     const SymmetryAxis& axis,
+                                     double tolerance) const {
   return nicer(shape_.refined(axis, angle, !fixed_.origin, !fixed_.direction), angle, tolerance);
 }
 
@@ -75,15 +85,16 @@ SymmetryAxis AxisLadders::nicer(const SymmetryAxis& axis, double angle, double t
 }
 
 // The fold that fits best so far determines the axis best; larger ones first among equals.
-std::int32_t AxisLadders::leader(const SymmetryAxis& candidate,
+std::int32_t AxisLadders::leader(Turn turn,
+                                 const SymmetryAxis& candidate,
                                  const std::vector<std::int32_t>& folds,
                                  double cap) const {
   std::int32_t leader = folds.front();
   double leading = kInfinity;
   for (const std::int32_t n : folds) {
     constexpr std::size_t kSamples = 300;  // points, for each of up to 400 folds
-    const double error =
-        shape_.mean_error(candidate, angle_of(n), cap, kSamples, kMuchBetter * leading);
+    const double angle = turn == Turn::kOne ? angle_of(n) : odd_angle_of(n);
+    const double error = shape_.mean_error(candidate, angle, cap, kSamples, kMuchBetter * leading);
     if (error < kMuchBetter * leading) {
       leading = error;
       leader = n;
@@ -92,7 +103,18 @@ std::int32_t AxisLadders::leader(const SymmetryAxis& candidate,
   return leader;
 }
 
+// Small turns move nothing far: about a shape that is nearly one of revolution they all fit, and
+// determine no axis. There large ones get a second try.
 Result<AxisLadder> AxisLadders::climb(const SymmetryAxis& candidate, double tolerance) const {
+  auto ladder = climb_by(Turn::kOne, candidate, tolerance);
+  if (!ladder || !ladder->many || ladder->fold > 1 || ladder->revolution) return ladder;
+  auto again = climb_by(Turn::kOdd, candidate, tolerance);
+  return !again || again->fold > 1 || again->revolution ? again : ladder;
+}
+
+Result<AxisLadder> AxisLadders::climb_by(Turn turn,
+                                         const SymmetryAxis& candidate,
+                                         double tolerance) const {
   AxisLadder result;
   result.axis = candidate;
   double rough = kRoughTolerances * tolerance;
@@ -105,7 +127,9 @@ Result<AxisLadder> AxisLadders::climb(const SymmetryAxis& candidate, double tole
     std::erase_if(folds, [&](std::int32_t n) { return misfitting_turn(candidate, n, rough) > 0; });
   }
   if (folds.empty()) return result;
-  result.axis = refined(candidate, leader(candidate, folds, rough), tolerance);
+  const std::int32_t best = leader(turn, candidate, folds, rough);
+  result.axis =
+      refined_by(turn == Turn::kOne ? angle_of(best) : odd_angle_of(best), candidate, tolerance);
   folds = quick_folds(result.axis, tolerance, kMostDetected);
   const bool revolution = !folds.empty() && fits_odd_angles(result.axis, tolerance);
   if (revolution || folds.size() > kManyFolds) {
@@ -326,8 +350,7 @@ Result<AxisLadders::Revolution> AxisLadders::revolution(const SymmetryAxis& cand
   // An odd angle determines the axis of what has no fold.
   const double angle = 2 * std::numbers::pi * kOddAngles.front();
   Revolution result;
-  result.axis =
-      nicer(shape_.refined(candidate, angle, !fixed_.origin, !fixed_.direction), angle, tolerance);
+  result.axis = refined_by(angle, candidate, tolerance);
   result.error = kInfinity;
   if (!fits_odd_angles(result.axis, enough)) return result;
   double worst = 0;

@@ -74,8 +74,20 @@ class AxisLadders {
                                               double enough) const;
 
  private:
+  // By which turn of a fold axes are compared and refined.
+  enum class Turn : std::uint8_t {
+    kOne,  // by one sector
+    kOdd,  // by sectors that come near an odd angle
+  };
+  [[nodiscard]] Result<AxisLadder> climb_by(Turn turn,
+                                            const SymmetryAxis& candidate,
+                                            double tolerance) const;
+  [[nodiscard]] SymmetryAxis refined_by(double angle,
+                                        const SymmetryAxis& axis,
+                                        double tolerance) const;
   [[nodiscard]] SymmetryAxis nicer(const SymmetryAxis& axis, double angle, double tolerance) const;
-  [[nodiscard]] std::int32_t leader(const SymmetryAxis& candidate,
+  [[nodiscard]] std::int32_t leader(Turn turn,
+                                    const SymmetryAxis& candidate,
                                     const std::vector<std::int32_t>& folds,
                                     double cap) const;
   [[nodiscard]] std::vector<std::int32_t> quick_folds(const SymmetryAxis& axis,

@@ -342,10 +342,10 @@ class Detector {
     return warnings;
   }
 
-  // `coarse`: by how much odd angles miss if not all fit within the tolerance, input units; else 0.
-  Failure revolution(const SymmetryAxis& axis, double coarse) const {
+  // `odd`: by how much odd angles miss, if that was measured; input units.
+  Failure revolution(const SymmetryAxis& axis, double odd) const {
     std::int32_t proposed = 0;
-    double least = kInfinity, most = coarse;
+    double least = kInfinity, most = odd;
     for (const std::int32_t n : kProposed) {
       const SymmetryAxis own = ladders_.refined(axis, n, tolerance_);
       const auto error = shape_.error(own, n, kInfinity, context_);
@@ -356,12 +356,13 @@ class Detector {
       proposed = n;
       if (least <= tolerance_) break;
     }
+    const bool nearly = most > tolerance_;
     const std::string tolerance = describe_number(tolerance_ / diameter_);
-    std::string message = "the surface is " + std::string(coarse > 0 ? "nearly " : "") +
+    std::string message = "the surface is " + std::string(nearly ? "nearly " : "") +
                           "one of revolution about the axis through " +
                           describe_rounded_point(axis.origin) + " along " +
                           describe_rounded_point(axis.direction) + ": ";
-    if (coarse > 0) {
+    if (nearly) {
       message += "angles of all kinds fit to within " +
                  describe_number(tolerance_that_takes(most / diameter_)) +
                  " of its diameter, the tolerance is " + tolerance;
