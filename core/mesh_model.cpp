@@ -16,18 +16,35 @@
 namespace symcell {
 namespace {
 
-void record(const plane::SymmetricPslg& symmetric, Statistics& statistics) {
-  Statistics::Symmetry& reported = statistics.symmetry;
-  reported.fold = symmetric.fold;
-  reported.axis_origin = {symmetric.centre.x, symmetric.centre.y, 0};
-  reported.error_rel = symmetric.symmetry_error_rel;
-  reported.detected = symmetric.fold_detected;
+std::vector<Warning> warnings_of(const plane::SymmetricPslg& symmetric) {
+  return symmetric.warnings;
 }
 
 struct SymmetricSolid {
   std::unique_ptr<solid::SectorSource> source;
   std::vector<FoldEstimate> candidates;
 };
+
+std::vector<Warning> warnings_of(const SymmetricSolid& solid) {
+  std::vector<Warning> warnings = solid.source->symmetry().warnings;
+  const std::vector<std::string>& repairs = solid.source->repairs();
+  if (!repairs.empty()) warnings.push_back(surface_repaired_warning(repairs));
+  const std::int32_t fold = solid.source->symmetry().fold;
+  if (!solid.candidates.empty() && solid.candidates.front().fold > fold) {
+    warnings.push_back(fold_not_largest_warning(fold, solid.candidates.front().fold,
+                                                "its cell has fewer elements"));
+  }
+  return warnings;
+}
+
+void record(const plane::SymmetricPslg& symmetric, Statistics& statistics) {
+  Statistics::Symmetry& reported = statistics.symmetry;
+  reported.fold = symmetric.fold;
+  reported.axis_origin = {symmetric.centre.x, symmetric.centre.y, 0};
+  reported.error_rel = symmetric.symmetry_error_rel;
+  reported.detected = symmetric.fold_detected;
+  statistics.warnings = warnings_of(symmetric);
+}
 
 void record(const SymmetricSolid& solid, Statistics& statistics) {
   const solid::Symmetry& found = solid.source->symmetry();
@@ -39,6 +56,7 @@ void record(const SymmetricSolid& solid, Statistics& statistics) {
   reported.detected = found.fold_detected;
   reported.candidates = solid.candidates;
   statistics.repairs = solid.source->repairs();
+  statistics.warnings = warnings_of(solid);
 }
 
 Result<SymmetricSolid> at_its_fold(Result<std::unique_ptr<solid::SectorSource>> source,
@@ -53,24 +71,33 @@ Result<SymmetricSolid> at_its_fold(Result<std::unique_ptr<solid::SectorSource>> 
 
 // `symmetrise` makes the model symmetric, `mesh` meshes what that gives.
 template <class Symmetrise, class Mesh>
-Result<MeshOutcome> run(const Symmetrise& symmetrise, const Mesh& mesh, ExecutionContext& context) {
+Result<MeshOutcome> run(const Symmetrise& symmetrise,
+                        const Mesh& mesh,
+                        bool strict,
+                        ExecutionContext& context) {
   Stopwatch total, watch;
   context.report(Phase::kSymmetry, 0.02);
   const auto symmetric = symmetrise();
   if (!symmetric) return error_of(symmetric);
+  SYMCELL_TRY(check_strict(strict, warnings_of(*symmetric)));
   const double symmetry_ms = watch.lap();
   Result<MeshOutcome> outcome = mesh(*symmetric);
   if (!outcome) return outcome;
   Statistics& statistics = outcome->statistics;
   record(*symmetric, statistics);
+  if (auto exempt = exempt_elements_warning(statistics.exempt, statistics.cell.elements)) {
+    statistics.warnings.push_back(std::move(*exempt));
+    SYMCELL_TRY(check_strict(strict, statistics.warnings));
+  }
   statistics.timings_ms.symmetry = symmetry_ms;
   statistics.timings_ms.total = total.lap();
   return outcome;
 }
 
 template <class Found>
-Result<Inspection> widened(Result<Found> found) {
+Result<Inspection> checked(Result<Found> found, bool strict) {
   if (!found) return error_of(found);
+  SYMCELL_TRY(check_strict(strict, found->warnings));
   return Inspection(std::move(*found));
 }
 
@@ -87,18 +114,20 @@ Result<MeshOutcome> mesh_model(const Model& model,
     const auto mesh = [&](const plane::SymmetricPslg& symmetric) {
       return plane::mesh_pslg(symmetric, options, context);
     };
-    return run(symmetrise, mesh, context);
+    return run(symmetrise, mesh, options.strict, context);
   }
   const auto mesh = [&](const SymmetricSolid& solid) {
     return solid::mesh_solid(*solid.source, options, context);
   };
   if (const auto* plc = std::get_if<Plc>(&model)) {
     const auto symmetrise = [&] { return solid::symmetrise_plc(*plc, options, context); };
-    return run([&] { return at_its_fold(symmetrise(), options, context); }, mesh, context);
+    return run([&] { return at_its_fold(symmetrise(), options, context); }, mesh, options.strict,
+               context);
   }
   const auto& surface = std::get<TriangleSurface>(model);
   const auto symmetrise = [&] { return solid::symmetrise_surface(surface, options, context); };
-  return run([&] { return at_its_fold(symmetrise(), options, context); }, mesh, context);
+  return run([&] { return at_its_fold(symmetrise(), options, context); }, mesh, options.strict,
+             context);
 }
 
 Result<Inspection> inspect_model(const Model& model,
@@ -106,12 +135,13 @@ Result<Inspection> inspect_model(const Model& model,
                                  ExecutionContext& context) {
   if (const auto* pslg = std::get_if<Pslg>(&model)) {
     SYMCELL_TRY(plane::validate_pslg(*pslg, context));
-    return widened(plane::inspect_pslg(*pslg, options, context));
+    return checked(plane::inspect_pslg(*pslg, options, context), options.strict);
   }
   if (const auto* plc = std::get_if<Plc>(&model)) {
-    return widened(solid::inspect_plc(*plc, options, context));
+    return checked(solid::inspect_plc(*plc, options, context), options.strict);
   }
-  return widened(solid::inspect_surface(std::get<TriangleSurface>(model), options, context));
+  return checked(solid::inspect_surface(std::get<TriangleSurface>(model), options, context),
+                 options.strict);
 }
 
 }  // namespace symcell

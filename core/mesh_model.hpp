@@ -10,13 +10,14 @@
 
 namespace symcell {
 
-// Makes the model symmetric and meshes it, in the wing of its kind.  Errors: all model, meshing and limit codes.
+// Makes the model symmetric and meshes it, in the wing of its kind.  Errors: all model, meshing and
+// limit codes; kStrictWarnings.
 [[nodiscard]] Result<MeshOutcome> mesh_model(const Model& model,
                                              const MeshOptions& options,
                                              ExecutionContext& context);
 
 // `symcell inspect`: validates the model and reports what symmetrising would find; meshes nothing.
-// Errors: model codes, limits.
+// Errors: model codes, limits, kStrictWarnings.
 [[nodiscard]] Result<Inspection> inspect_model(const Model& model,
                                                const MeshOptions& options,
                                                ExecutionContext& context);

@@ -391,6 +391,8 @@ constexpr auto kRows = std::to_array<OptionRow>({
     flag_row<&MeshOptions::plain>(
         {"plain", "", "",
          "Delaunay refinement only: no relocation, coarsening or other improvement", kAll}),
+    flag_row<&MeshOptions::strict>(
+        {"strict", "", "", "any warning is an error, and nothing is written", kAll}),
 });
 
 }  // namespace

@@ -51,8 +51,10 @@ Json timings_to_json(const Statistics::TimingsMs& t) {
 Json folds_to_json(const std::vector<FoldCandidate>& folds) {
   Json json = Json::array();
   for (const FoldCandidate& rung : folds) {
-    json.push_back(
-        {{"fold", rung.fold}, {"error", number(rung.error_rel)}, {"accepted", rung.accepted}});
+    json.push_back({{"fold", rung.fold},
+                    {"error", number(rung.error_rel)},
+                    {"accepted", rung.accepted},
+                    {"worst", rung.worst ? point(*rung.worst) : Json(nullptr)}});
   }
   return json;
 }
@@ -75,6 +77,7 @@ Json inspected(const PslgInspection& inspection) {
   json["components"] = inspection.components;
   json["min_input_angle_deg"] = number(inspection.min_input_angle_deg);
   json["folds"] = folds_to_json(inspection.folds);
+  json["warnings"] = warnings_to_json(inspection.warnings);
   json["version"] = version();
   return json;
 }
@@ -103,6 +106,7 @@ Json inspected(const SolidInspection& inspection) {
   }
   json["repairs"] = inspection.repairs;
   json["folds"] = folds_to_json(inspection.folds);
+  json["warnings"] = warnings_to_json(inspection.warnings);
   json["problem"] = inspection.problem.empty() ? Json(nullptr) : Json(inspection.problem);
   json["version"] = version();
   return json;
@@ -117,6 +121,21 @@ Json estimates_to_json(const std::vector<FoldEstimate>& candidates) {
 }
 
 }  // namespace
+
+Json warnings_to_json(const std::vector<Warning>& warnings) {
+  Json json = Json::array();
+  for (const Warning& warning : warnings) {
+    Json entry = {
+        {"code", warning_code_name(warning.code)}, {"text", warning.text}, {"mend", warning.mend}};
+    if (warning.near_fold) {
+      entry["fold"] = warning.near_fold->fold;
+      entry["error_rel"] = number(warning.near_fold->error_rel);
+      entry["tolerance"] = number(warning.near_fold->tolerance_rel);
+    }
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
 
 Json statistics_to_json(const Statistics& statistics, const MeshOptions& options, ModelKind kind) {
   const Statistics::Symmetry& symmetry = statistics.symmetry;
@@ -141,6 +160,7 @@ Json statistics_to_json(const Statistics& statistics, const MeshOptions& options
   for (const ExemptCount& exempt : statistics.exempt) {
     json["exempt"].push_back({{"reason", exempt.reason}, {"elements", exempt.elements}});
   }
+  json["warnings"] = warnings_to_json(statistics.warnings);
   if (!is_planar(kind)) {
     json["delaunay"] = statistics.delaunay;
     json["repairs"] = statistics.repairs;

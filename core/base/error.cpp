@@ -34,6 +34,7 @@ std::string_view error_code_name(ErrorCode code) {
     case ErrorCode::kNonplanarFacet: return "nonplanar_facet";
     case ErrorCode::kNotWatertight: return "not_watertight";
     case ErrorCode::kAmbiguousSymmetry: return "ambiguous_symmetry";
+    case ErrorCode::kStrictWarnings: return "strict_warnings";
     case ErrorCode::kTetrahedralizationFailed: return "tetrahedralization_failed";
     case ErrorCode::kBoundUnreachable: return "bound_unreachable";
     case ErrorCode::kElementLimit: return "element_limit";

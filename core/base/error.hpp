@@ -48,6 +48,7 @@ enum class ErrorCode : std::uint16_t {
   kNonplanarFacet = 313,
   kNotWatertight = 314,
   kAmbiguousSymmetry = 315,  // a surface of revolution: the fold must be given
+  kStrictWarnings = 316,     // the option `strict`, and there are warnings
   // Meshing.
   kBoundUnreachable = 400,
   kTetrahedralizationFailed = 401,  // no sector could be tetrahedralized

@@ -2,19 +2,30 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "core/cell/warning.hpp"
 #include "core/geometry/point.hpp"
 
 namespace symcell {
 
-// One rung of the ladder of folds that detection looked at.
+// Folds are listed up to so many symmetry tolerances, and up to so large a fold beyond the first of
+// them.
+inline constexpr double kNearTolerances = 10;
+inline constexpr std::int32_t kMostNearFold = 64;
+
+// One rung of the ladder of folds that fit the model, if only nearly.
 struct FoldCandidate {
   std::int32_t fold = 1;
-  double error_rel = 0;  // largest distance of a rotated vertex from the shape / diameter
-  bool accepted = false;
+  double error_rel = 0;   // largest distance of a rotated vertex from the shape / diameter
+  bool accepted = false;  // whether the fold, if given, would be accepted about this axis
+  // The place of the error: a point of the model that misses the shape when it is turned.
+  std::optional<Point3> worst = {};
+  // Accepted if given, but never by detection: another fold fits so much better.
+  bool ruled_out = false;
 };
 
 struct PslgInspection {
@@ -32,6 +43,7 @@ struct PslgInspection {
   std::size_t components = 0;        // edge-connected pieces of the domain
   double min_input_angle_deg = 0;    // smallest angle between segments at a vertex, in the domain
   std::vector<FoldCandidate> folds;  // ascending
+  std::vector<Warning> warnings;
 };
 
 struct SolidInspection {
@@ -53,6 +65,7 @@ struct SolidInspection {
   std::size_t regions = 0;
   std::vector<std::string> repairs;
   std::vector<FoldCandidate> folds;  // the ladder, ascending
+  std::vector<Warning> warnings;
   // Not empty: why a mesh of this model would be refused (open, self-intersecting, ambiguous).
   std::string problem;
 };

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/cell/warning.hpp"
 #include "core/geometry/point.hpp"
 
 namespace symcell {
@@ -65,6 +66,9 @@ struct Statistics {
   } refinement;
 
   std::vector<ExemptCount> exempt;
+
+  // What was changed, chosen or nearly fitted.
+  std::vector<Warning> warnings;
 
   // What was mended in a surface, in words that name how many and where; empty: nothing.
   std::vector<std::string> repairs;

@@ -42,6 +42,7 @@ struct MeshOptions {
   std::uint64_t seed = 0;
   // Plain Delaunay refinement only: no relocation, no coarsening. For comparison and benchmarks.
   bool plain = false;
+  bool strict = false;  // warnings are errors
 };
 
 }  // namespace symcell

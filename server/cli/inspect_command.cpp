@@ -2,6 +2,8 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <variant>
 
 #include "api/schema/options.hpp"
 #include "api/schema/statistics_json.hpp"
@@ -27,9 +29,10 @@ struct InspectArguments {
   OptionFlags flags;
 };
 
-Result<void> inspect(const InspectArguments& arguments,
-                     MeshOptions options,
-                     ExecutionContext& context) {
+// Returns the warnings.
+Result<std::string> inspect(const InspectArguments& arguments,
+                            MeshOptions options,
+                            ExecutionContext& context) {
   const Result<Model> model = read_model_file(arguments.model);
   if (!model) return error_of(model);
   const Result<MeshOptions> fitting = options_for(kind_of(*model), std::move(options));
@@ -41,15 +44,19 @@ Result<void> inspect(const InspectArguments& arguments,
   if (std::fflush(stdout) != 0) {
     return fail(ErrorCode::kWriteFailed, "cannot write to standard output");
   }
-  return {};
+  const auto warnings_of = [](const auto& one) { return warnings_to_json(one.warnings).dump(); };
+  return std::visit(warnings_of, *found);
 }
 
 Result<void> run(const InspectArguments& arguments) {
   const Result<MeshOptions> options = arguments.flags.options();
   if (!options) return error_of(options);
-  return run_supervised(
+  const auto warnings = run_supervised(
       [&](ExecutionContext& context) { return inspect(arguments, *options, context); },
       {.time_limit_s = options->time_limit_s, .memory_bytes = options->memory_limit_bytes});
+  if (!warnings) return error_of(warnings);
+  report_warnings(*warnings, arguments.json_errors);
+  return {};
 }
 
 }  // namespace
@@ -63,7 +70,7 @@ void add_inspect_command(CLI::App& app, int& exit_code) {
       ->option_text(" ");
   arguments->flags.add_to(*command);
   command->add_flag("--json-errors", arguments->json_errors,
-                    "errors as problem documents (JSON) on standard error");
+                    "errors as problem documents, warnings as JSON, on standard error");
   command->footer(kExamples);
   command->callback([arguments, &exit_code] {
     const Result<void> done = run(*arguments);

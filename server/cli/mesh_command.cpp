@@ -93,7 +93,7 @@ class MeshRun {
   Result<void> run() {
     auto done = prepare();
     if (!done) return done;
-    done = run_supervised(
+    auto warnings = run_supervised(
         [this](ExecutionContext& context) {
           context_ = &context;
           return mesh_and_write();
@@ -101,11 +101,13 @@ class MeshRun {
         {.time_limit_s = options_.time_limit_s,
          .memory_bytes = options_.memory_limit_bytes,
          .progress_bar = !arguments_.quiet});
-    if (!done) {
-      keep_fault(done.error());
-      return done;
+    if (!warnings) {
+      keep_fault(warnings.error());
+      return error_of(warnings);
     }
-    return commit();
+    done = commit();
+    if (done) report_warnings(*warnings, arguments_.json_errors);
+    return done;
   }
 
  private:
@@ -122,7 +124,8 @@ class MeshRun {
   }
 
   // In the child process: what it does to this object is not seen by commit(), but for the files.
-  Result<void> mesh_and_write() {
+  // Returns the warnings.
+  Result<std::string> mesh_and_write() {
     auto outcome = mesh();
     if (!outcome) return error_of(outcome);
     auto done = write(*outcome);
@@ -130,7 +133,8 @@ class MeshRun {
     if (!done && context_->cancelled()) {
       return fail(ErrorCode::kCancelled, "cancelled while writing; no output was left");
     }
-    return done;
+    if (!done) return error_of(done);
+    return warnings_to_json(outcome->statistics.warnings).dump();
   }
 
   Result<void> prepare() {
@@ -244,7 +248,7 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
       "raw|zlib|ascii");
   arguments->flags.add_to(*command);
   command->add_flag("--json-errors", arguments->json_errors,
-                    "errors as problem documents (JSON) on standard error");
+                    "errors as problem documents, warnings as JSON, on standard error");
   command->add_flag("-q,--quiet", arguments->quiet, "no progress bar");
   command->footer(kExamples);
   command->callback([arguments, &exit_code] {

@@ -38,4 +38,21 @@ int report_error(const Error& error, bool as_json) {
   return row.exit_code;
 }
 
+void report_warnings(const std::string& warnings, bool as_json) {
+  using Json = nlohmann::ordered_json;
+  const Json list = Json::parse(warnings, nullptr, false);
+  if (!list.is_array() || list.empty()) return;
+  if (as_json) {
+    Json document;
+    document["warnings"] = list;
+    const std::string text = document.dump(2, ' ', false, Json::error_handler_t::replace);
+    std::fprintf(stderr, "%s\n", text.c_str());
+    return;
+  }
+  for (const Json& warning : list) {
+    std::fprintf(stderr, "symcell: warning: %s\n  code %s; %s\n", warning.value("text", "").c_str(),
+                 warning.value("code", "").c_str(), warning.value("mend", "").c_str());
+  }
+}
+
 }  // namespace symcell::cli

@@ -66,10 +66,12 @@ class SharedContext {
   ExecutionContext* context_ = nullptr;
 };
 
-std::string encode(const Result<void>& result) {
+std::string encode(const Result<std::string>& result) {
   using Json = nlohmann::json;
   Json json;
-  if (!result) {
+  if (result) {
+    json = {{"text", *result}};
+  } else {
     const Error& e = result.error();
     json = {{"code", static_cast<int>(e.code)},
             {"message", e.message},
@@ -80,16 +82,15 @@ std::string encode(const Result<void>& result) {
 }
 
 // nullopt: the text is not whole.
-std::optional<Result<void>> decode(const std::string& text) {
+std::optional<Result<std::string>> decode(const std::string& text) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (json.is_discarded()) return std::nullopt;
-  if (json.is_null()) return Result<void>{};
+  if (json.contains("text")) return json.at("text").get<std::string>();
   return fail(static_cast<ErrorCode>(json.at("code").get<int>()), json.at("message"),
               json.at("elements"), json.at("pointer"));
 }
 
-Result<void> result_of(const std::function<Result<void>(ExecutionContext&)>& work,
-                       ExecutionContext& context) {
+Result<std::string> result_of(const SupervisedWork& work, ExecutionContext& context) {
   try {
     return work(context);
   } catch (const std::bad_alloc&) {
@@ -99,7 +100,7 @@ Result<void> result_of(const std::function<Result<void>(ExecutionContext&)>& wor
   }
 }
 
-[[noreturn]] void run_child(const std::function<Result<void>(ExecutionContext&)>& work,
+[[noreturn]] void run_child(const SupervisedWork& work,
                             ExecutionContext& context,
                             const SupervisedSettings& settings,
                             pid_t parent,
@@ -110,7 +111,7 @@ Result<void> result_of(const std::function<Result<void>(ExecutionContext&)>& wor
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
   server::apply_limits({settings.memory_bytes, 0});
-  const Result<void> result = result_of(work, context);
+  const Result<std::string> result = result_of(work, context);
   std::fflush(nullptr);
   const std::string text = encode(result);
   std::string_view rest = text;
@@ -188,8 +189,7 @@ class Supervisor {
 
 }  // namespace
 
-Result<void> run_supervised(const std::function<Result<void>(ExecutionContext&)>& work,
-                            const SupervisedSettings& settings) {
+Result<std::string> run_supervised(const SupervisedWork& work, const SupervisedSettings& settings) {
   SharedContext shared;
   ExecutionContext& context = shared.get();
   std::array<int, 2> pipe{};

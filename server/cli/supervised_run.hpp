@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include "core/base/error.hpp"
 #include "core/base/execution_context.hpp"
@@ -18,10 +19,11 @@ struct SupervisedSettings {
 };
 
 // `work` runs in a fork of this process: it may write to files and standard output, all else that
-// it changes stays there. SIGINT and SIGTERM cancel its context; a second one kills. Requires: this
+// it changes stays there, but for the text that it returns. SIGINT and SIGTERM cancel its context; a second one kills. Requires: this
 // process has one thread. Errors: those of `work`; kWorkerCrashed, kMemoryLimit, kTimeLimit,
 // kCancelled if it had to be ended or ended by itself.
-[[nodiscard]] Result<void> run_supervised(
-    const std::function<Result<void>(ExecutionContext&)>& work, const SupervisedSettings& settings);
+using SupervisedWork = std::function<Result<std::string>(ExecutionContext&)>;
+[[nodiscard]] Result<std::string> run_supervised(const SupervisedWork& work,
+                                                 const SupervisedSettings& settings);
 
 }  // namespace symcell::cli

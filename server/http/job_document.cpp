@@ -89,6 +89,10 @@ Json job_document(const Job& job, JobService& jobs, JobDetail detail) {
     if (statistics.is_object() && statistics.contains("cell")) {
       document["progress"]["elements"] = statistics["cell"].value("elements", 0U);
     }
+    // Not there in what an earlier version wrote.
+    document["warnings"] = statistics.is_object() && statistics.contains("warnings")
+                               ? statistics["warnings"]
+                               : Json::array();
     document["statistics"] = std::move(statistics);
   }
   document["links"] = links_of(job);

@@ -81,6 +81,26 @@ class JobsTest(unittest.TestCase):
         self.assertEqual(job["error"]["code"], "not_symmetric")
         self.assertEqual(job["error"]["status"], 422)
 
+    def test_warnings_are_told_and_strict_refuses_them(self):
+        uneven = square()
+        uneven["vertices"][0] = [-0.5, -0.2]
+        job = self.server.finished(self.server.submit(uneven)["id"])
+        self.assertEqual([w["code"] for w in job["warnings"]], ["no_symmetry_found"])
+        self.assertEqual(job["statistics"]["warnings"], job["warnings"])
+        text = self.server.get(job["links"]["events"]).text()
+        end = json.loads(text.split("event: end\ndata: ", 1)[1].split("\n", 1)[0])
+        self.assertEqual(end["warnings"], job["warnings"])
+        inspection = self.server.post_json("/v1/inspect", {"model": uneven}).json()
+        self.assertEqual(inspection["warnings"], job["warnings"])
+
+        strict = self.server.finished(self.server.submit(uneven, {"strict": True})["id"])
+        self.assertEqual(strict["state"], "failed")
+        self.assertEqual(strict["error"]["code"], "strict_warnings")
+        self.assertEqual(strict["error"]["status"], 422)
+        self.assertIn("no_symmetry_found", strict["error"]["detail"])
+        even = self.server.finished(self.server.submit(square(), {"strict": True})["id"])
+        self.assertEqual((even["state"], even["warnings"]), ("succeeded", []))
+
     def test_events_lead_to_the_end(self):
         text = self.server.get(self.path + "/events").text()
         end = [block for block in text.split("\n\n") if block.startswith("event: end\n")]

@@ -39,6 +39,8 @@ Statistics sample_statistics() {
                 .detected = true};
   s.refinement = {.steiner_points = 5, .splits = 2, .flips = 30, .crossings = 4};
   s.exempt = {{"small_input_angle", 1}};
+  s.warnings = {near_symmetry_warning({12, 1.06e-3, 1.1e-3}, 4, 1e-3),
+                *exempt_elements_warning(s.exempt, s.cell.elements)};
   s.repairs = {"1,234 triangles turned round: the surface was inside out"};
   s.delaunay = false;
   s.timings_ms = {
@@ -69,7 +71,8 @@ TEST(Golden, InspectionOfEachKind) {
   planar.segments = 4;
   planar.components = 1;
   planar.min_input_angle_deg = 90;
-  planar.folds = {{2, 0, true}, {3, 0.25, false}, {4, 0, true}};
+  planar.folds = {{2, 0, true, Point3{1, 0, 0}}, {3, 0.25, false}, {4, 0, true}};
+  planar.warnings = {no_symmetry_warning(1e-6)};
   expect_golden("inspection_pslg.json", text_of(inspection_to_json(planar)));
 
   SolidInspection plc;
@@ -83,6 +86,7 @@ TEST(Golden, InspectionOfEachKind) {
   plc.holes = 1;
   plc.regions = 2;
   plc.folds = planar.folds;
+  plc.warnings = {axis_ambiguous_warning(4, {0.5, 0.5, 0}, {0, 0, 1})};
   expect_golden("inspection_plc.json", text_of(inspection_to_json(plc)));
 
   SolidInspection surface = plc;
@@ -94,6 +98,8 @@ TEST(Golden, InspectionOfEachKind) {
   surface.facets = 11;
   surface.shells = 1;
   surface.repairs = {"2 vertices welded"};
+  surface.warnings = {surface_repaired_warning(surface.repairs),
+                      fold_not_largest_warning(4, 12, "it fits exactly")};
   surface.problem = "the surface is open: 3 edges have one triangle";
   expect_golden("inspection_surface.json", text_of(inspection_to_json(surface)));
 }

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <numeric>
+
+#include "core/cell/inspection.hpp"
 
 namespace symcell::plane {
 namespace {
@@ -12,6 +15,9 @@ namespace {
 // fold, of which large folds get a spread of their turns. Both bound the time of a detection.
 constexpr std::size_t kMaxSamples = 2000;
 constexpr std::int64_t kQueriesPerFold = 50'000;
+// How far off the centroid may be as a centre, at a first look.
+constexpr double kCentroidTolerances = 4;
+constexpr std::ptrdiff_t kMostNear = 24;  // folds beyond the tolerance that are measured
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -148,12 +154,10 @@ double FoldDetector::miss(
   return index_.nearest(image, reach, alike).distance;
 }
 
-bool FoldDetector::passes_quickly(std::int32_t fold) const {
+bool FoldDetector::passes_quickly(std::int32_t fold, double reach) const {
   const double angle = 2 * std::numbers::pi / fold;
   const double cosine = std::cos(angle);
   const double sine = std::sin(angle);
-  // The centroid may be off by more than the tolerance where the shape is only nearly symmetric.
-  const double reach = 4 * tolerance_;
   return std::all_of(samples_.begin(), samples_.end(), [&](const Sample& s) {
     return miss(s, turn(s.point, centre_, cosine, sine), cosine, sine, reach) <= reach;
   });
@@ -192,10 +196,40 @@ Result<std::vector<FoldFit>> FoldDetector::ladder(ExecutionContext& context) con
   std::vector<FoldFit> fits;
   for (const std::int32_t n : candidates(arbitrary <= 4 * tolerance_)) {
     SYMCELL_TRY(context.check());
-    if (passes_quickly(n)) fits.push_back(fit(n));
+    // The centroid may be off by more than the tolerance where the shape is only nearly symmetric.
+    if (passes_quickly(n, kCentroidTolerances * tolerance_)) fits.push_back(fit(n));
   }
   judge(fits, arbitrary);
   return fits;
+}
+
+Result<std::vector<FoldFit>> FoldDetector::near(const std::vector<FoldFit>& known,
+                                                double reach,
+                                                ExecutionContext& context) const {
+  const auto points = static_cast<std::int64_t>(prepared_.points.size());
+  const auto highest = static_cast<std::int32_t>(std::min<std::int64_t>(points, kMostNearFold));
+  std::vector<std::int32_t> folds;
+  for (std::int32_t n = 2; n <= highest; ++n) {
+    SYMCELL_TRY(context.check());
+    const bool fits = std::any_of(known.begin(), known.end(), [&](const FoldFit& f) {
+      return f.fold == n && f.error <= tolerance_;
+    });
+    if (!fits && passes_quickly(n, reach + kCentroidTolerances * tolerance_)) folds.push_back(n);
+  }
+  std::vector<FoldFit> result;
+  if (folds.empty()) return result;
+  // With that tolerance: the centre is sought within its reach.
+  const FoldDetector wide(prepared_, index_, reach, centre_given_ ? &centre_ : nullptr);
+  const auto wanted = wide.candidates(wide.arbitrary_angle_error() <= kCentroidTolerances * reach);
+  std::erase_if(
+      folds, [&](std::int32_t n) { return !std::binary_search(wanted.begin(), wanted.end(), n); });
+  if (std::ssize(folds) > kMostNear) folds.erase(folds.begin(), folds.end() - kMostNear);
+  for (const std::int32_t n : folds) {
+    SYMCELL_TRY(context.check());
+    const FoldFit fit = wide.fit(n);
+    if (fit.error <= reach) result.push_back(fit);
+  }
+  return result;
 }
 
 void FoldDetector::judge(std::vector<FoldFit>& fits, double arbitrary) const {

@@ -24,6 +24,7 @@ struct FoldFit {
   std::int32_t worst_point = -1;  // of the prepared PSLG
   bool vertices_match = false;
   bool kept = false;
+  bool accepted = false;  // whether the fold, if given, would be; set by inspection
 };
 
 class FoldDetector {
@@ -36,6 +37,12 @@ class FoldDetector {
 
   // The folds above 1 that pass a first test, ascending, judged by the rules above.
   [[nodiscard]] Result<std::vector<FoldFit>> ladder(ExecutionContext& context) const;
+
+  // The folds up to kMostNearFold that are not `known` to fit, with errors up to `reach`, ascending.
+  // Cost: hardly any unless there are some.
+  [[nodiscard]] Result<std::vector<FoldFit>> near(const std::vector<FoldFit>& known,
+                                                  double reach,
+                                                  ExecutionContext& context) const;
 
   // One fold, measured; the error may exceed the tolerance.
   [[nodiscard]] FoldFit fit(std::int32_t fold) const;
@@ -53,7 +60,7 @@ class FoldDetector {
   void keep_discriminating_samples();
   [[nodiscard]] double miss(
       const Sample& sample, Point2 image, double cosine, double sine, double reach) const;
-  [[nodiscard]] bool passes_quickly(std::int32_t fold) const;
+  [[nodiscard]] bool passes_quickly(std::int32_t fold, double reach) const;
   [[nodiscard]] double arbitrary_angle_error() const;
   [[nodiscard]] std::vector<std::int32_t> candidates(bool revolution) const;
   [[nodiscard]] Point2 refine_centre(std::int32_t fold, Point2 centre) const;

@@ -84,8 +84,15 @@ Result<PslgInspection> inspect_pslg(const Pslg& pslg,
   result.components = count_components(*subdomains);
   result.min_input_angle_deg = min_angle_deg(pslg, *subdomains);
   for (const FoldFit& fit : ladder) {
-    result.folds.push_back({fit.fold, fit.error / prepared.diameter, fit.kept});
+    FoldCandidate rung{fit.fold, fit.error / prepared.diameter, fit.accepted};
+    rung.ruled_out = fit.accepted && !fit.kept;
+    if (fit.worst_point >= 0) {
+      const Point2 worst = prepared.points[at(fit.worst_point)];
+      rung.worst = Point3{worst.x, worst.y, 0};
+    }
+    result.folds.push_back(rung);
   }
+  result.warnings = symmetric->warnings;
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/cell/warning.hpp"
 #include "core/geometry/orbit_vertex.hpp"
 #include "core/geometry/point.hpp"
 #include "core/model/pslg.hpp"
@@ -44,6 +45,7 @@ struct SymmetricPslg {
   double diameter = 0;            // of the input, bounding-box diagonal
   bool fold_detected = false;
   bool centre_detected = false;
+  std::vector<Warning> warnings;  // of the choice of fold
 
   [[nodiscard]] std::int32_t segment_marker(std::size_t segment, std::int32_t copy) const {
     const auto first = static_cast<std::size_t>(segments[segment].first_marker);

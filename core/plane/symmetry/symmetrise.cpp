@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/cell/inspection.hpp"
 #include "core/geometry/limits.hpp"
 #include "core/geometry/point_tree.hpp"
 #include "core/geometry/rotation.hpp"
@@ -83,8 +84,23 @@ class Symmetriser {
     if (options_.fold) return declared(*options_.fold);
     auto fits = detector_.ladder(context_);
     if (!fits) return error_of(fits);
-    if (ladder != nullptr) *ladder = *fits;
-    for (auto fit = fits->rbegin(); fit != fits->rend(); ++fit) {
+    auto result = largest(*fits);
+    if (!result) return result;
+    const auto near = detector_.near(*fits, reach(), context_);
+    if (!near) return error_of(near);
+    SYMCELL_TRY(warn(*near, *result));
+    if (ladder != nullptr) *ladder = completed(std::move(*fits), *near, result->fold);
+    return result;
+  }
+
+ private:
+  Result<SymmetricPslg> without_symmetry() {
+    return close(1, options_.center ? *options_.center : plain_centre(prepared_));
+  }
+
+  // Of the largest fold that is kept and can be closed; `fits` keeps no larger one.
+  Result<SymmetricPslg> largest(std::vector<FoldFit>& fits) {
+    for (auto fit = fits.rbegin(); fit != fits.rend(); ++fit) {
       if (!fit->kept) continue;
       auto result = close(fit->fold, fit->centre);
       if (result) {
@@ -92,17 +108,69 @@ class Symmetriser {
         return result;
       }
       if (result.error().code != ErrorCode::kNotSymmetric) return result;
-      if (ladder != nullptr)
-        (*ladder)[static_cast<std::size_t>(fits->rend() - fit) - 1].kept = false;
+      fit->kept = false;
     }
     auto result = without_symmetry();
     if (result) result->fold_detected = true;
     return result;
   }
 
- private:
-  Result<SymmetricPslg> without_symmetry() {
-    return close(1, options_.center ? *options_.center : plain_centre(prepared_));
+  [[nodiscard]] double reach() const {
+    constexpr double kMostToleranceRel = 0.1;  // that can be given
+    return std::max(tolerance_,
+                    std::min(kNearTolerances * tolerance_, kMostToleranceRel * prepared_.diameter));
+  }
+
+  // Of the folds that only a larger tolerance takes, the largest; each with the smallest tolerance.
+  Result<void> warn(const std::vector<FoldFit>& near, SymmetricPslg& result) {
+    constexpr std::size_t kMostNear = 3;  // reported
+    constexpr int kMostTried = 5;         // each is closed
+    const double given = tolerance_ / prepared_.diameter;
+    int tried = 0;
+    for (auto fit = near.rbegin(); fit != near.rend() && fit->fold > result.fold; ++fit) {
+      if (fit->error <= tolerance_) continue;
+      if (result.warnings.size() == kMostNear || tried == kMostTried) break;
+      const double error = fit->error / prepared_.diameter;
+      const NearFold fold{fit->fold, error, tolerance_that_takes(error)};
+      // Not if more tolerance is wanted for less.
+      const bool of_use =
+          std::all_of(result.warnings.begin(), result.warnings.end(), [&](const Warning& w) {
+            const double share = w.near_fold->fold % fold.fold == 0 ? 0.5 : 1;
+            return fold.tolerance_rel < share * w.near_fold->tolerance_rel;
+          });
+      if (!of_use) continue;
+      ++tried;
+      MeshOptions wider = options_;
+      wider.symmetry_tolerance_rel = fold.tolerance_rel;
+      Symmetriser other(pslg_, wider, prepared_, context_);
+      auto fits = other.detector_.ladder(context_);
+      if (!fits) return error_of(fits);
+      const auto found = other.largest(*fits);
+      if (!found && is_limit(found.error().code)) return error_of(found);
+      if (!found || found->fold != fold.fold) continue;
+      result.warnings.push_back(near_symmetry_warning(fold, result.fold, given));
+    }
+    if (result.fold == 1) result.warnings.push_back(no_symmetry_warning(given));
+    return {};
+  }
+
+  // Both lists as one, with what giving each fold would lead to.
+  std::vector<FoldFit> completed(std::vector<FoldFit> fits,
+                                 const std::vector<FoldFit>& near,
+                                 std::int32_t taken) {
+    constexpr int kMostTried = 12;  // each is closed
+    std::erase_if(fits, [&](const FoldFit& f) { return f.error > tolerance_; });
+    fits.insert(fits.end(), near.begin(), near.end());
+    std::sort(fits.begin(), fits.end(),
+              [](const FoldFit& a, const FoldFit& b) { return a.fold < b.fold; });
+    int tried = 0;
+    for (FoldFit& fit : fits) {
+      // A divisor of what is symmetric is.
+      fit.accepted = taken % fit.fold == 0;
+      if (fit.accepted || fit.error > 2 * tolerance_) continue;
+      fit.accepted = ++tried > kMostTried ? fit.kept : declared(fit.fold).has_value();
+    }
+    return fits;
   }
 
   Result<SymmetricPslg> declared(std::int32_t fold) {

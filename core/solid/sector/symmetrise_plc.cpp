@@ -1,4 +1,5 @@
 // `symmetrise_plc`: a validated PLC, its symmetry, and the sectors cut from it.
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -14,6 +15,12 @@
 namespace symcell::solid {
 namespace {
 
+double tolerance_of(const PlcComplex& complex, const MeshOptions& options) {
+  return std::max(
+      options.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel) * complex.diameter,
+      resolution_of(complex.diameter, complex.magnitude));
+}
+
 Result<SymmetricPlc> find_and_average(const ValidPlc& valid,
                                       const MeshOptions& options,
                                       std::vector<PlcFit>* ladder,
@@ -21,12 +28,23 @@ Result<SymmetricPlc> find_and_average(const ValidPlc& valid,
   const PlcComplex& complex = valid.complex;
   auto fit = find_plc_symmetry(complex, valid.cells, options, ladder, context);
   if (!fit) return error_of(fit);
-  auto plc = make_symmetric_plc(complex, *fit, options.ignore_markers, context);
+  auto plc = make_symmetric_plc(complex, *fit, tolerance_of(complex, options),
+                                options.ignore_markers, context);
   if (!plc) return plc;
   plc->volume = valid.cells.volume;
+  plc->symmetry.warnings = fit->warnings;
   plc->symmetry.fold_detected = !options.fold;
   plc->symmetry.axis_detected = !(options.axis_origin && options.axis_direction);
   return plc;
+}
+
+bool can_be_averaged(const ValidPlc& valid,
+                     const PlcFit& fit,
+                     const MeshOptions& options,
+                     ExecutionContext& context) {
+  return make_symmetric_plc(valid.complex, fit, tolerance_of(valid.complex, options),
+                            options.ignore_markers, context)
+      .has_value();
 }
 
 class PlcSource final : public SectorSource {
@@ -56,6 +74,7 @@ class PlcSource final : public SectorSource {
     options.axis_direction = plc_.symmetry.frame.direction();
     auto plc = find_and_average(*valid_, options, nullptr, context);
     if (!plc) return error_of(plc);
+    plc->symmetry.warnings = plc_.symmetry.warnings;
     plc->symmetry.fold_detected = plc_.symmetry.fold_detected;
     plc->symmetry.axis_detected = plc_.symmetry.axis_detected;
     return std::make_unique<PlcSource>(valid_, options_, std::move(*plc));
@@ -104,8 +123,15 @@ Result<SolidInspection> inspect_plc(const Plc& plc,
   result.volume = valid->cells.volume;
   result.holes = plc.holes.size();
   result.regions = plc.regions.size();
+  result.warnings = symmetric->symmetry.warnings;
   for (const PlcFit& fit : ladder) {
-    result.folds.push_back({fit.fold, fit.error / valid->complex.diameter, fit.accepted});
+    const bool accepted = fit.accepted && (result.fold % fit.fold == 0 ||
+                                           can_be_averaged(*valid, fit, options, context));
+    FoldCandidate rung{fit.fold, fit.error / valid->complex.diameter, accepted};
+    if (fit.worst_vertex >= 0) {
+      rung.worst = valid->complex.points[static_cast<std::size_t>(fit.worst_vertex)];
+    }
+    result.folds.push_back(rung);
   }
   return result;
 }

@@ -38,6 +38,7 @@ Result<SolidInspection> inspect_surface(const TriangleSurface& surface,
   result.facets = clean->surface.triangles.size();
   result.shells = static_cast<std::size_t>(clean->shells);
   result.repairs = clean->repairs;
+  if (!clean->repairs.empty()) result.warnings.push_back(surface_repaired_warning(clean->repairs));
   if (clean->problem) {
     result.problem = clean->problem->message;
     return result;
@@ -57,6 +58,8 @@ Result<SolidInspection> inspect_surface(const TriangleSurface& surface,
   result.axis_direction = symmetry.frame.direction();
   result.symmetry_error_rel = symmetry.error_rel;
   result.folds = found->folds;
+  result.warnings.insert(result.warnings.begin(), symmetry.warnings.begin(),
+                         symmetry.warnings.end());
   return result;
 }
 

@@ -3,25 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <numeric>
+#include <string>
 #include <utility>
 
 #include "core/model/describe.hpp"
 #include "core/solid/surface/mass_properties.hpp"
+#include "core/solid/symmetry/axis_ladder.hpp"
 #include "core/solid/symmetry/shape_symmetry.hpp"
 
 namespace symcell::solid {
 namespace {
 
-// Folds looked for; a larger one can be given.
-constexpr std::int32_t kMostDetected = 400;
-// Where more folds fit at a first look, the shape is nearly one of revolution, and those count that
-// fit much better than arbitrary angles.
-constexpr std::size_t kManyFolds = 24;
-// The first look is about an axis not yet refined.
-constexpr double kRoughTolerances = 6;
 // Principal moments that differ by less determine no axis.
 constexpr double kSimilarMoments = 0.01;
 // Directions spread over half a sphere where the moments are equal: fewer lie too far apart for the
@@ -38,18 +31,15 @@ constexpr std::int32_t kMostScannedFold = 6;  // equal moments come with cubic s
 constexpr double kFarOff = 0.04;
 // Axes nearer than this (radians) are one.
 constexpr double kSameAxis = 1e-2;
-// A fold stands out, or rules another one out, if its error is smaller by this factor.
-constexpr double kDominance = 4;
-// Of two folds the larger one leads unless the other fits better by this factor.
-constexpr double kMuchBetter = 0.7;
-// Below the noise of single precision, of the diameter, all errors are equal.
-constexpr double kNoiseRel = 1e-6;
-constexpr double kAcceptedAnyway = 1e-3;  // of the diameter
-// Angles no regular polygon fits: the golden section and its like, of a full turn.
-constexpr std::array<double, 3> kOddAngles = {0.381966011250105, 0.135335283236613,
-                                              0.070735301630646};
-// A refined axis so near to a coordinate axis, or an origin so near to 0, means these.
-constexpr double kNiceRel = 2e-5;
+// Of a surface that is coarsely one of revolution, every angle fits within so many tolerances.
+constexpr double kCoarseTolerances = 2;
+// Folds proposed for a surface of revolution, of which the first that fits is named.
+constexpr std::array<std::int32_t, 7> kProposed = {8, 12, 6, 4, 3, 5, 2};
+// Folds that fit nearly: so many are reported, after so many attempts.
+constexpr std::size_t kMostNear = 3;
+constexpr int kMostNearTried = 5;
+// A smaller fold is worth a word beside a multiple of it if this much less tolerance takes it.
+constexpr double kMuchSmaller = 0.5;
 
 bool finite(Point3 p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
@@ -60,12 +50,11 @@ std::string describe_rounded_point(Point3 p) {
          ")";
 }
 
-struct AxisResult {
-  SymmetryAxis axis;
+// A fold beyond the tolerance, about one of the candidate axes.
+struct NearRung {
+  SymmetryAxis candidate;
   std::int32_t fold = 1;
   double error = 0;  // input units
-  bool revolution = false;
-  std::vector<FoldCandidate> folds;
 };
 
 class Detector {
@@ -77,7 +66,11 @@ class Detector {
         diameter_(clean.diameter),
         tolerance_(options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel) *
                    clean.diameter),
-        shape_(clean.surface, clean.diameter) {}
+        shape_(clean.surface, clean.diameter),
+        ladders_(shape_,
+                 clean.diameter,
+                 {options.axis_origin.has_value(), options.axis_direction.has_value()},
+                 context) {}
 
   Result<DetectedSymmetry> run() {
     SYMCELL_TRY(check_options());
@@ -108,13 +101,13 @@ class Detector {
   }
 
   [[nodiscard]] DetectedSymmetry whole_model() const {
-    AxisResult result;
+    AxisLadder result;
     result.axis.origin = options_.axis_origin.value_or(mass_.centroid);
     result.axis.direction = options_.axis_direction.value_or(Point3{0, 0, 1});
     return finish(result);
   }
 
-  [[nodiscard]] DetectedSymmetry finish(const AxisResult& found) const {
+  [[nodiscard]] DetectedSymmetry finish(const AxisLadder& found) const {
     DetectedSymmetry result;
     Symmetry& s = result.symmetry;
     s.fold = found.fold;
@@ -123,6 +116,12 @@ class Detector {
     s.fold_detected = !options_.fold;
     s.axis_detected = !options_.axis_direction;
     s.frame = AxisFrame::of_axis(found.axis.origin, found.axis.direction);
+    if (s.fold_detected && s.fold == 1) {
+      s.warnings.push_back(no_symmetry_warning(tolerance_ / diameter_));
+    }
+    if (ambiguous_) {
+      s.warnings.push_back(axis_ambiguous_warning(s.fold, found.axis.origin, found.axis.direction));
+    }
     result.folds = found.folds;
     return result;
   }
@@ -185,38 +184,6 @@ class Detector {
     });
   }
 
-  [[nodiscard]] SymmetryAxis refined(const SymmetryAxis& axis, std::int32_t fold) const {
-    const double angle = 2 * std::numbers::pi / fold;
-    SymmetryAxis better =
-        shape_.refined(axis, angle, !options_.axis_origin, !options_.axis_direction);
-    return nicer(better, angle);
-  }
-
-  // Coordinate axes and planes through 0 where they fit as well: flat ends become exactly flat.
-  [[nodiscard]] SymmetryAxis nicer(const SymmetryAxis& axis, double angle) const {
-    SymmetryAxis nice = axis;
-    const auto snap = [](double& x, double value, double reach) {
-      if (std::abs(x - value) <= reach) x = value;
-    };
-    for (double* x : {&nice.direction.x, &nice.direction.y, &nice.direction.z}) {
-      for (const double value : {-1.0, 0.0, 1.0}) snap(*x, value, kNiceRel);
-    }
-    const double norm = length(nice.direction);
-    nice.direction = (1 / norm) * nice.direction;
-    if (!options_.axis_origin) {
-      for (double* x : {&nice.origin.x, &nice.origin.y, &nice.origin.z}) {
-        snap(*x, 0, kNiceRel * diameter_);
-      }
-    }
-    if (options_.axis_direction) nice.direction = axis.direction;
-    constexpr std::size_t kSamples = 1000;  // points: two means are compared to 5 %
-    const double cap = tolerance_;
-    const double before = shape_.mean_error(axis, angle, cap, kSamples);
-    const double after = shape_.mean_error(nice, angle, cap, kSamples);
-    // Equal but for the noise of single precision.
-    return after <= 1.05 * before + 1e-6 * diameter_ ? nice : axis;
-  }
-
   // The axes about which a turn misses the surface least come first.
   [[nodiscard]] std::vector<SymmetryAxis> by_fit(const std::vector<SymmetryAxis>& axes,
                                                  std::int32_t fold) const {
@@ -238,21 +205,32 @@ class Detector {
 
   Result<DetectedSymmetry> check_fold(const std::vector<SymmetryAxis>& axes) {
     const std::int32_t n = *options_.fold;
-    AxisResult best;
+    AxisLadder best;
     ShapeError best_error;
     best_error.distance = kInfinity;
+    std::vector<SymmetryAxis> accepted;
     for (const SymmetryAxis& candidate : by_fit(axes, n)) {
       // The others are far off, and refining them takes its time.
       if (best.fold == n && best.error <= tolerance_ && !fits_nearly(candidate, n)) break;
-      const SymmetryAxis axis = refined(candidate, n);
-      // A better axis than those before, or it does not matter how bad.
-      auto error = shape_.error(axis, n, best_error.distance, context_);
+      const SymmetryAxis axis = ladders_.refined(candidate, n, tolerance_);
+      // A better axis than those before, or another one that will do, or it does not matter how
+      // bad.
+      const double enough =
+          ambiguous_ ? best_error.distance : std::max(best_error.distance, tolerance_);
+      auto error = shape_.error(axis, n, enough, context_);
       if (!error) return error_of(error);
+      if (error->distance <= tolerance_ && !known(accepted, axis.direction, kSameAxis)) {
+        ambiguous_ = !accepted.empty() && !options_.axis_direction;
+        accepted.push_back(axis);
+      }
       if (error->distance >= best_error.distance) continue;
       best_error = *error;
       best.axis = axis;
       best.fold = n;
       best.error = error->distance;
+    }
+    if (best.error > tolerance_ && best.error <= kCoarseTolerances * tolerance_) {
+      SYMCELL_TRY(check_as_detected(axes, best));
     }
     if (best.error > tolerance_) {
       return fail(ErrorCode::kNotSymmetric,
@@ -267,172 +245,137 @@ class Detector {
                       describe_rounded(tolerance_ / diameter_) +
                       "; give another fold or axis, or a larger symmetry_tolerance");
     }
-    best.folds.push_back({n, best.error / diameter_, true});
+    best.folds.push_back({n, best.error / diameter_, true, best_error.worst});
     return finish(best);
+  }
+
+  // What detection would find is accepted when it is given: other folds may determine the axis
+  // better.
+  Result<void> check_as_detected(const std::vector<SymmetryAxis>& axes, AxisLadder& best) const {
+    const std::int32_t n = *options_.fold;
+    for (const SymmetryAxis& candidate : axes) {
+      if (!fits_nearly(candidate, n)) continue;
+      const auto ladder = ladders_.climb(candidate, tolerance_);
+      if (!ladder) return error_of(ladder);
+      if (ladder->fold % n != 0) continue;
+      const auto error = shape_.error(ladder->axis, n, best.error, context_);
+      if (!error) return error_of(error);
+      if (error->distance >= best.error) continue;
+      best.axis = ladder->axis;
+      best.error = error->distance;
+    }
+    return {};
   }
 
   Result<DetectedSymmetry> detect_fold(const std::vector<SymmetryAxis>& axes) {
-    AxisResult best;
+    AxisLadder best;
     best.axis = axes.front();
-    bool revolution = false;
+    std::vector<NearRung> near;
+    std::vector<SymmetryAxis> equal;  // of the fold of `best`
+    std::vector<SymmetryAxis> nearly_round;
     for (const SymmetryAxis& candidate : axes) {
-      auto result = ladder(candidate);
-      if (!result) return error_of(result);
-      if (result->revolution) {
-        revolution = true;
-        best = *result;
-        break;
+      auto ladder = ladders_.climb(candidate, tolerance_);
+      if (!ladder) return error_of(ladder);
+      if (ladder->revolution) return revolution(ladder->axis, 0);
+      SYMCELL_TRY(ladders_.widen(candidate, tolerance_, *ladder));
+      if (ladder->many) nearly_round.push_back(candidate);
+      for (const FoldCandidate& c : ladder->folds) {
+        if (!c.accepted) near.push_back({candidate, c.fold, c.error_rel * diameter_});
+      }
+      if (ladder->fold > best.fold) equal.clear();
+      if (ladder->fold >= best.fold && !known(equal, ladder->axis.direction, kSameAxis)) {
+        equal.push_back(ladder->axis);
       }
       const bool better =
-          result->fold > best.fold ||
-          (result->fold == best.fold && result->fold > 1 && result->error < best.error);
+          ladder->fold > best.fold ||
+          (ladder->fold == best.fold && ladder->fold > 1 && ladder->error < best.error);
       if (better) {
-        best = *result;
-      } else if (best.fold == 1 && best.folds.size() < result->folds.size()) {
-        best.folds = result->folds;
+        best = *ladder;
+      } else if (best.fold == 1 && best.folds.size() < ladder->folds.size()) {
+        best.folds = ladder->folds;
       }
     }
-    if (revolution) {
-      return fail(ErrorCode::kAmbiguousSymmetry,
-                  "the surface is one of revolution about the axis through " +
-                      describe_rounded_point(best.axis.origin) + " along " +
-                      describe_rounded_point(best.axis.direction) +
-                      ": every fold fits within the tolerance; give the fold");
-    }
-    return finish(best);
-  }
-
-  Result<AxisResult> ladder(const SymmetryAxis& candidate) {
-    AxisResult result;
-    result.axis = candidate;
-    std::vector<std::int32_t> folds = quick_folds(candidate, kRoughTolerances * tolerance_);
-    if (folds.empty()) return result;
-    // The fold that fits best so far determines the axis best; larger ones first among equals.
-    std::int32_t leader = folds.front();
-    double leading = kInfinity;
-    for (const std::int32_t n : folds) {
-      constexpr std::size_t kSamples = 300;  // points, for each of up to 400 folds
-      const double error =
-          shape_.mean_error(candidate, 2 * std::numbers::pi / n, kRoughTolerances * tolerance_,
-                            kSamples, kMuchBetter * leading);
-      if (error < kMuchBetter * leading) {
-        leading = error;
-        leader = n;
+    if (best.fold == 1) {
+      for (const SymmetryAxis& candidate : nearly_round) {
+        const auto round =
+            ladders_.revolution(candidate, tolerance_, kCoarseTolerances * tolerance_);
+        if (!round) return error_of(round);
+        if (round->error < kInfinity) return revolution(round->axis, round->error);
       }
     }
-    result.axis = refined(candidate, leader);
-    folds = quick_folds(result.axis, tolerance_);
-    const bool revolution = !folds.empty() && fits_odd_angles(result.axis);
-    if (revolution || folds.size() > kManyFolds) {
-      auto better = outstanding(result.axis, folds);
-      if (better.empty() && revolution) {
-        result.revolution = true;
-        return result;
-      }
-      if (better.empty()) {
-        folds.resize(kManyFolds);
-      } else {
-        folds = std::move(better);
-      }
-    }
-    std::vector<FoldCandidate>& rungs = result.folds;
-    // Turns that folds have in common are measured once.
-    std::map<std::pair<std::int32_t, std::int32_t>, double> turns;
-    const double enough = 4 * tolerance_;
-    for (const std::int32_t n : folds) {
-      double worst = 0;
-      // Where a few points show that a turn is out of the question it is the only one to measure.
-      const std::int32_t misfit = misfitting_turn(result.axis, n);
-      for (std::int32_t k = misfit > 0 ? misfit : 1; k < n && worst <= enough; ++k) {
-        const std::int32_t g = std::gcd(k, n);
-        const auto [turn, fresh] = turns.try_emplace({k / g, n / g}, 0.0);
-        if (fresh) {
-          auto error = shape_.turn_error(result.axis, k, n, enough, context_);
-          if (!error) return error_of(error);
-          turn->second = error->distance;
-        }
-        worst = std::max(worst, turn->second);
-        if (misfit > 0) break;
-      }
-      rungs.push_back({n, worst / diameter_, false});
-    }
-    judge(result);
+    ambiguous_ = best.fold > 1 && equal.size() > 1 && !options_.axis_direction;
+    DetectedSymmetry result = finish(best);
+    auto warnings = near_warnings(std::move(near), best.fold);
+    if (!warnings) return error_of(warnings);
+    auto& all = result.symmetry.warnings;
+    all.insert(all.begin(), warnings->begin(), warnings->end());
     return result;
   }
 
-  [[nodiscard]] std::vector<std::int32_t> quick_folds(const SymmetryAxis& axis,
-                                                      double reach) const {
-    std::vector<std::int32_t> folds;
-    for (std::int32_t n = 2; n <= kMostDetected; ++n) {
-      if (shape_.fits(axis, 2 * std::numbers::pi / n, reach)) folds.push_back(n);
-    }
-    return folds;
-  }
-
-  // A turn of a fold that does not fit, 0: all do. Turns far from each other first: small ones move
-  // nothing far.
-  [[nodiscard]] std::int32_t misfitting_turn(const SymmetryAxis& axis, std::int32_t n) const {
-    std::int32_t step = std::max(1, static_cast<std::int32_t>(kOddAngles.front() * n));
-    while (std::gcd(step, n) != 1) ++step;
-    std::int32_t k = 0;
-    for (std::int32_t i = 1; i < n; ++i) {
-      k = (k + step) % n;
-      if (!shape_.fits(axis, 2 * std::numbers::pi * k / n, tolerance_)) return k;
-    }
-    return 0;
-  }
-
-  [[nodiscard]] bool fits_odd_angles(const SymmetryAxis& axis) const {
-    return std::all_of(kOddAngles.begin(), kOddAngles.end(), [&](double share) {
-      return shape_.fits(axis, 2 * std::numbers::pi * share, tolerance_);
+  // Of the folds that a larger tolerance would take, the largest; each with the smallest tolerance.
+  Result<std::vector<Warning>> near_warnings(std::vector<NearRung> near, std::int32_t taken) const {
+    std::stable_sort(near.begin(), near.end(), [](const NearRung& a, const NearRung& b) {
+      return std::pair(-a.fold, a.error) < std::pair(-b.fold, b.error);
     });
+    std::vector<Warning> warnings;
+    std::vector<NearFold> reported;
+    int tried = 0;
+    for (const NearRung& rung : near) {
+      if (reported.size() == kMostNear || tried == kMostNearTried) break;
+      const NearFold fold{rung.fold, rung.error / diameter_,
+                          tolerance_that_takes(rung.error / diameter_)};
+      // Not if more tolerance is wanted for less.
+      const bool of_use =
+          fold.fold > taken && std::ranges::all_of(reported, [&](const NearFold& larger) {
+            const double share = larger.fold % fold.fold == 0 ? kMuchSmaller : 1;
+            return fold.tolerance_rel < share * larger.tolerance_rel;
+          });
+      if (!of_use) continue;
+      ++tried;
+      const auto holds =
+          ladders_.takes(rung.candidate, fold.fold, rung.error, fold.tolerance_rel * diameter_);
+      if (!holds) return error_of(holds);
+      if (!*holds) continue;
+      reported.push_back(fold);
+      warnings.push_back(near_symmetry_warning(fold, taken, tolerance_ / diameter_));
+    }
+    return warnings;
   }
 
-  // Of a shape that all angles fit: the folds that fit much better than an odd angle.
-  [[nodiscard]] std::vector<std::int32_t> outstanding(
-      const SymmetryAxis& axis, const std::vector<std::int32_t>& folds) const {
-    constexpr std::size_t kSamples = 1000;  // points: means are compared to a factor of four
-    const auto mean = [&](double share) {
-      return shape_.mean_error(axis, 2 * std::numbers::pi * share, tolerance_, kSamples);
-    };
-    double odd = 0;
-    for (const double share : kOddAngles) odd = std::max(odd, mean(share));
-    std::vector<std::int32_t> better;
-    // By the turns of a fold that come near those angles: small ones move nothing far.
-    const auto stands_out = [&](std::int32_t n) {
-      return std::all_of(kOddAngles.begin(), kOddAngles.end(), [&](double share) {
-        const double turn = std::max(1.0, std::round(share * n)) / n;
-        return std::max(mean(turn), kNoiseRel * diameter_) <= odd / kDominance;
-      });
-    };
-    for (const std::int32_t n : folds) {
-      if (stands_out(n)) better.push_back(n);
+  // `odd`: by how much odd angles miss, if that was measured; input units.
+  Failure revolution(const SymmetryAxis& axis, double odd) const {
+    std::int32_t proposed = 0;
+    double least = kInfinity, most = odd;
+    for (const std::int32_t n : kProposed) {
+      const SymmetryAxis own = ladders_.refined(axis, n, tolerance_);
+      const auto error = shape_.error(own, n, kInfinity, context_);
+      if (!error) return error_of(error);
+      most = std::max(most, error->distance);
+      if (error->distance >= least) continue;
+      least = error->distance;
+      proposed = n;
+      if (least <= tolerance_) break;
     }
-    return better;
-  }
-
-  void judge(AxisResult& result) const {
-    std::vector<FoldCandidate>& rungs = result.folds;
-    for (FoldCandidate& c : rungs) {
-      c.accepted = c.error_rel * diameter_ <= tolerance_;
-      double divisors = kInfinity;
-      for (const FoldCandidate& o : rungs) {
-        if (o.fold == c.fold) continue;
-        const bool divides = c.fold % o.fold == 0, multiple = o.fold % c.fold == 0;
-        if (!divides && !multiple && std::max(o.error_rel, kNoiseRel) < c.error_rel / kDominance) {
-          c.accepted = false;
-        }
-        if (divides) divisors = std::min(divisors, std::max(o.error_rel, kNoiseRel));
-      }
-      if (divisors < kInfinity && c.error_rel > std::max(kAcceptedAnyway, kDominance * divisors)) {
-        c.accepted = false;
-      }
+    const bool nearly = most > tolerance_;
+    const std::string tolerance = describe_number(tolerance_ / diameter_);
+    std::string message = "the surface is " + std::string(nearly ? "nearly " : "") +
+                          "one of revolution about the axis through " +
+                          describe_rounded_point(axis.origin) + " along " +
+                          describe_rounded_point(axis.direction) + ": ";
+    if (nearly) {
+      message += "angles of all kinds fit to within " +
+                 describe_number(tolerance_that_takes(most / diameter_)) +
+                 " of its diameter, the tolerance is " + tolerance;
+    } else {
+      message += "every fold fits within the tolerance of " + tolerance + " of its diameter";
     }
-    for (const FoldCandidate& c : rungs) {
-      if (!c.accepted) continue;
-      result.fold = c.fold;
-      result.error = c.error_rel * diameter_;
+    message += "; give the fold that is meant, for example fold=" + std::to_string(proposed);
+    if (least > tolerance_) {
+      message +=
+          " with symmetry_tolerance=" + describe_number(tolerance_that_takes(least / diameter_));
     }
+    return fail(ErrorCode::kAmbiguousSymmetry, message + ", or fold=1 to mesh the whole", {},
+                "/options/fold");
   }
 
   const CleanSurface& clean_;
@@ -441,7 +384,9 @@ class Detector {
   double diameter_;
   double tolerance_;
   ShapeSymmetry shape_;
+  AxisLadders ladders_;
   MassProperties mass_;
+  bool ambiguous_ = false;  // another axis has the same fold
 };
 
 }  // namespace

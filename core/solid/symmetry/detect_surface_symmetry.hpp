@@ -4,7 +4,11 @@
 // a fine polygon passes every fold for a circle. A fold is dropped if another one, neither dividing
 // the other, has less than a quarter of its error, or if its error is far above those of its own
 // divisors; the largest left counts. A shape that any angle fits is a surface of revolution: which
-// fold is meant must then be given.
+// fold is meant must then be given. So is one that is coarsely divided: nothing fits within the
+// tolerance and stands out, and every angle fits within twice as much.
+//
+// Folds up to ten tolerances are measured beside it, and those reported that a larger tolerance
+// would take by the same rules.
 #pragma once
 
 #include <vector>
@@ -20,7 +24,7 @@ namespace symcell::solid {
 
 struct DetectedSymmetry {
   Symmetry symmetry;
-  std::vector<FoldCandidate> folds;  // the ladder about the axis, ascending
+  std::vector<FoldCandidate> folds;  // about the axis, ascending, up to ten tolerances
 };
 
 // Requires: `clean` has no problem.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/cell/warning.hpp"
 #include "core/geometry/axis_frame.hpp"
 #include "core/geometry/orbit_vertex.hpp"
 #include "core/geometry/point_tree.hpp"
@@ -27,6 +28,7 @@ struct PlcFit {
   // point, which has exponent 0.  Points within the tolerance of the axis are orbits of one.
   std::vector<OrbitVertex> vertex;
   std::vector<std::uint8_t> on_axis;  // per orbit
+  std::vector<Warning> warnings;      // of the search that chose this fit
 };
 
 // What the rotation by one sector does to the complex.

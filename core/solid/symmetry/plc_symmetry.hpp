@@ -10,8 +10,9 @@
 
 namespace symcell::solid {
 
-// An accepted fit.  `ladder`, if not null: the folds that the numbers of vertices allow about the
-// axis found, ascending, from 2.
+// An accepted fit, with the warnings of its choice.  `ladder`, if not null: the folds that the
+// numbers of vertices allow about the axis found, ascending, from 2; those beyond the tolerance with
+// their errors up to ten times it.
 // Errors: kBadFold, kBadAxis (options out of range), kNotSymmetric for a given fold, limits.
 [[nodiscard]] Result<PlcFit> find_plc_symmetry(const PlcComplex& complex,
                                                const PlcCells& cells,

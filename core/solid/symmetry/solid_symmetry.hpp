@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "core/cell/warning.hpp"
 #include "core/geometry/axis_frame.hpp"
 
 namespace symcell::solid {
@@ -15,6 +17,7 @@ struct Symmetry {
   double diameter = 0;   // bounding-box diagonal of the model
   bool fold_detected = false;
   bool axis_detected = false;
+  std::vector<Warning> warnings;  // of the choice of fold and axis
 };
 
 }  // namespace symcell::solid

@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "api/formats/vtu_reader.hpp"
@@ -143,6 +144,28 @@ TEST_F(Cli, RepairsOfSurfacesAreTold) {
     EXPECT_FALSE(stats["repairs"].empty()) << name;
     EXPECT_NEAR(stats["cell"]["volume"].get<double>() * 4, 32, 1e-6);
   }
+}
+
+TEST_F(Cli, WarningsAreToldAndStrictRefusesThem) {
+  const std::string box = model("b28_inside_out.stl");
+  const Outcome mesh = symcell("mesh " + box + " --fold 4 --cell " + file("c.vtu") + " --stats -");
+  ASSERT_EQ(mesh.exit_code, 0) << mesh.err;
+  EXPECT_NE(mesh.err.find("symcell: warning: the surface was repaired"), std::string::npos);
+  EXPECT_EQ(Json::parse(mesh.out)["warnings"].back()["code"], "surface_repaired");
+  const Outcome found = symcell("inspect " + box + " --json-errors");
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_EQ(Json::parse(found.err)["warnings"], Json::parse(found.out)["warnings"]);
+
+  for (const std::string& command :
+       {"mesh " + box + " --cell " + file("d.vtu"), "inspect " + box}) {
+    const Outcome strict = symcell(command + " --strict");
+    EXPECT_EQ(strict.exit_code, 3);
+    EXPECT_EQ(strict.out, "");
+    EXPECT_NE(strict.err.find("surface_repaired"), std::string::npos) << strict.err;
+    EXPECT_NE(strict.err.find("code strict_warnings"), std::string::npos) << strict.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(file("d.vtu")));
+  EXPECT_EQ(symcell("mesh " + ring_ + " --strict").exit_code, 0);
 }
 
 TEST_F(Cli, ExitCodes) {

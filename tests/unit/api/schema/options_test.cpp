@@ -30,7 +30,7 @@ TEST(Options, JsonAndTextsSetTheSame) {
   const auto json = options_from_json(Json::parse(R"({"fold": 6, "ignore_markers": true,
       "center": [1, -2.5], "symmetry_tolerance": 1e-4, "min_angle": 33, "max_area": 0.5,
       "max_edge": 2, "order": 2, "max_elements": 1000, "time_limit": 1.5, "seed": 7,
-      "plain": true})"));
+      "plain": true, "strict": true})"));
   const auto texts = options_from_texts({{"fold", "6"},
                                          {"ignore-markers", ""},
                                          {"center", "1,-2.5"},
@@ -42,7 +42,8 @@ TEST(Options, JsonAndTextsSetTheSame) {
                                          {"max_elements", "1000"},
                                          {"time-limit", "1.5"},
                                          {"seed", "7"},
-                                         {"plain", "true"}});
+                                         {"plain", "true"},
+                                         {"strict", ""}});
   ASSERT_TRUE(json) << json.error().message;
   ASSERT_TRUE(texts) << texts.error().message;
   EXPECT_EQ(options_to_json(*json, kPlanar), options_to_json(*texts, kPlanar));
@@ -53,6 +54,7 @@ TEST(Options, JsonAndTextsSetTheSame) {
   EXPECT_EQ(json->max_elements, 1000U);
   EXPECT_EQ(json->seed, 7U);
   EXPECT_TRUE(json->plain);
+  EXPECT_TRUE(json->strict);
 }
 
 TEST(Options, FoldsThatAreNone) {

@@ -1,0 +1,129 @@
+#include "core/cell/warning.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "core/cell/statistics.hpp"
+#include "core/model/describe.hpp"
+
+namespace symcell {
+namespace {
+
+// A fold is refined on its own axis, and detection may measure it about another: the two differ by
+// less than this share as a rule.
+constexpr double kSpare = 2e-3;
+// Share of a cell's elements that may be exempt without a word.
+constexpr double kFewExempt = 0.005;
+
+std::string fold_text(std::int32_t fold) {
+  return "fold=" + std::to_string(fold);
+}
+
+std::string rounded_point(Point3 p) {
+  return describe_rounded(p.x) + "," + describe_rounded(p.y) + "," + describe_rounded(p.z);
+}
+
+}  // namespace
+
+std::string_view warning_code_name(WarningCode code) {
+  switch (code) {
+    case WarningCode::kNearSymmetry: return "near_symmetry";
+    case WarningCode::kNoSymmetryFound: return "no_symmetry_found";
+    case WarningCode::kFoldNotLargest: return "fold_not_largest";
+    case WarningCode::kAxisAmbiguous: return "axis_ambiguous";
+    case WarningCode::kSurfaceRepaired: return "surface_repaired";
+    case WarningCode::kExemptElements: return "exempt_elements";
+  }
+  return "unknown";
+}
+
+double tolerance_that_takes(double error_rel) {
+  if (!(error_rel > 0) || !std::isfinite(error_rel)) return error_rel;
+  const double wanted = (1 + kSpare) * error_rel;
+  const int exponent = static_cast<int>(std::floor(std::log10(wanted))) - 1;
+  const double digits = std::ceil(wanted / std::pow(10.0, exponent));
+  // Read as a decimal, so that it is written as one again.
+  const std::string text =
+      std::to_string(static_cast<int>(digits)) + "e" + std::to_string(exponent);
+  double value = wanted;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+Warning near_symmetry_warning(const NearFold& near_fold, std::int32_t taken, double tolerance_rel) {
+  const std::string tolerance = describe_number(near_fold.tolerance_rel);
+  Warning warning;
+  warning.code = WarningCode::kNearSymmetry;
+  warning.text = "fold " + std::to_string(near_fold.fold) + " fits to within " +
+                 describe_rounded(near_fold.error_rel) + " of the diameter, the tolerance is " +
+                 describe_number(tolerance_rel) + "; fold " + std::to_string(taken) + " was taken";
+  warning.mend = "give symmetry_tolerance=" + tolerance + " for fold " +
+                 std::to_string(near_fold.fold) + ", or " + fold_text(taken) + " if " +
+                 std::to_string(taken) + " is meant";
+  warning.near_fold = near_fold;
+  return warning;
+}
+
+Warning no_symmetry_warning(double tolerance_rel) {
+  return {WarningCode::kNoSymmetryFound,
+          "no fold above 1 fits within the tolerance of " + describe_number(tolerance_rel) +
+              " of the diameter: the cell is the whole model",
+          "give the fold that is meant, to be told where the model breaks it, or a larger "
+          "symmetry_tolerance; give fold=1 if none is meant"};
+}
+
+Warning fold_not_largest_warning(std::int32_t taken, std::int32_t largest, const std::string& why) {
+  return {
+      WarningCode::kFoldNotLargest,
+      "fold " + std::to_string(taken) + " was taken although " + std::to_string(largest) +
+          " fits too, because " + why,
+      "give " + fold_text(largest) + " for the largest, or " + fold_text(taken) + " to settle it"};
+}
+
+Warning axis_ambiguous_warning(std::int32_t fold, Point3 origin, Point3 direction) {
+  return {WarningCode::kAxisAmbiguous,
+          "more than one axis has fold " + std::to_string(fold) + ": the one through (" +
+              rounded_point(origin) + ") along (" + rounded_point(direction) + ") was taken",
+          "give axis_direction for another, or axis_direction=" + rounded_point(direction) +
+              " to settle it"};
+}
+
+Warning surface_repaired_warning(const std::vector<std::string>& repairs) {
+  std::string text = "the surface was repaired in " + std::to_string(repairs.size()) +
+                     (repairs.size() == 1 ? " way: " : " ways: ");
+  for (std::size_t i = 0; i < repairs.size(); ++i) text += (i > 0 ? "; " : "") + repairs[i];
+  return {WarningCode::kSurfaceRepaired, std::move(text),
+          "look at the places named, and mend the model where that is not what it should be"};
+}
+
+std::optional<Warning> exempt_elements_warning(const std::vector<ExemptCount>& exempt,
+                                               std::uint64_t elements) {
+  std::uint64_t count = 0;
+  std::string reasons;
+  for (const ExemptCount& e : exempt) {
+    count += e.elements;
+    reasons += (reasons.empty() ? "" : ", ") + e.reason + " " + std::to_string(e.elements);
+  }
+  if (!(static_cast<double>(count) > kFewExempt * static_cast<double>(elements))) {
+    return std::nullopt;
+  }
+  return Warning{WarningCode::kExemptElements,
+                 std::to_string(count) + " of the cell's " + std::to_string(elements) +
+                     " elements are exempt from the quality bound (" + reasons + ")",
+                 "blunt the model's sharp corners, relax the bound, or take a smaller fold where "
+                 "the reason is fold_angle"};
+}
+
+Result<void> check_strict(bool strict, const std::vector<Warning>& warnings) {
+  if (!strict || warnings.empty()) return {};
+  std::string message = std::to_string(warnings.size()) +
+                        (warnings.size() == 1 ? " warning" : " warnings") +
+                        ", and strict allows none";
+  for (const Warning& warning : warnings) {
+    message += ": " + std::string(warning_code_name(warning.code)) + ": " + warning.text + "; " +
+               warning.mend;
+  }
+  return fail(ErrorCode::kStrictWarnings, std::move(message), {}, "/options/strict");
+}
+
+}  // namespace symcell

@@ -1,0 +1,68 @@
+// What a mesh or an inspection says beside its figures: what was changed, chosen or nearly fitted,
+// in a sentence with figures, and what the user can do about it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/error.hpp"
+#include "core/geometry/point.hpp"
+
+namespace symcell {
+
+struct ExemptCount;
+
+enum class WarningCode : std::uint8_t {
+  kNearSymmetry,     // a larger fold fits only just not
+  kNoSymmetryFound,  // detection gave fold 1
+  kFoldNotLargest,   // detection gave less than the largest fold that fits
+  kAxisAmbiguous,    // other axes have the same fold
+  kSurfaceRepaired,  // the surface was mended before
+  kExemptElements,   // many elements break a bound that the input forces them to
+};
+
+// The stable spelling used in JSON and logs.
+[[nodiscard]] std::string_view warning_code_name(WarningCode code);
+
+// A fold that is refused for its error alone.
+struct NearFold {
+  std::int32_t fold = 1;
+  double error_rel = 0;      // of the diameter
+  double tolerance_rel = 0;  // the symmetry tolerance, rounded up to two digits, that takes it
+};
+
+struct Warning {
+  WarningCode code = WarningCode::kNearSymmetry;
+  std::string text;                        // one plain sentence, without a full stop
+  std::string mend;                        // likewise: what to give or to correct
+  std::optional<NearFold> near_fold = {};  // of kNearSymmetry
+};
+
+// `error_rel` rounded up to two digits, with a little to spare for another way to the same fold.
+[[nodiscard]] double tolerance_that_takes(double error_rel);
+
+// `taken`: the fold of the result.  `tolerance_rel`: the one that refuses the other fold.
+[[nodiscard]] Warning near_symmetry_warning(const NearFold& near_fold,
+                                            std::int32_t taken,
+                                            double tolerance_rel);
+[[nodiscard]] Warning no_symmetry_warning(double tolerance_rel);
+// `why`: the reason to take less than `largest`, in words that follow "because".
+[[nodiscard]] Warning fold_not_largest_warning(std::int32_t taken,
+                                               std::int32_t largest,
+                                               const std::string& why);
+// `direction`: of the axis taken.
+[[nodiscard]] Warning axis_ambiguous_warning(std::int32_t fold, Point3 origin, Point3 direction);
+// Requires: `repairs` is not empty.
+[[nodiscard]] Warning surface_repaired_warning(const std::vector<std::string>& repairs);
+// Where more than 0.5 % of a cell's `elements` are exempt.
+[[nodiscard]] std::optional<Warning> exempt_elements_warning(const std::vector<ExemptCount>& exempt,
+                                                             std::uint64_t elements);
+
+// What the option `strict` makes of warnings.  Errors: kStrictWarnings, which lists them, unless
+// there are none or `strict` is false.
+[[nodiscard]] Result<void> check_strict(bool strict, const std::vector<Warning>& warnings);
+
+}  // namespace symcell
