@@ -39,7 +39,7 @@ constexpr std::size_t kSimpleHoleEdges = 6;
 constexpr double kSimpleHoleRel = 0.02;
 constexpr double kFlatHoleRel = 1e-6;
 // Of the tolerance. Wraps narrower than the least share of the diameter would take forever.
-constexpr double kWrapAlpha = 4;
+constexpr double kWrapAlpha = 10;
 constexpr double kWrapOffset = 0.5;
 constexpr double kLeastWrapRel = 2e-4;
 
