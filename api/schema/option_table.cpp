@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
 
 #include "api/printable.hpp"
 
@@ -275,6 +277,22 @@ Result<void> set_seed(const OptionInfo& info, const OptionValue& value, MeshOpti
   return {};
 }
 
+constexpr std::array<std::pair<std::string_view, Repair>, 4> kRepairs = {{{"none", Repair::kNone},
+                                                                          {"safe", Repair::kSafe},
+                                                                          {"all", Repair::kAll},
+                                                                          {"wrap", Repair::kWrap}}};
+
+Result<void> set_repair(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
+  if (value.kind == Kind::kText) {
+    for (const auto& [name, repair] : kRepairs) {
+      if (value.text != name) continue;
+      options.repair = repair;
+      return {};
+    }
+  }
+  return refuse(ErrorCode::kBadOption, info, value, "none, safe, all or wrap");
+}
+
 using Json = nlohmann::ordered_json;
 
 Json bound_to_json(double bound) {
@@ -292,6 +310,14 @@ Json get_center(const MeshOptions& o, ModelKind) {
 Json get_symmetry_tolerance(const MeshOptions& o, ModelKind kind) {
   return o.symmetry_tolerance_rel.value_or(
       kind == ModelKind::kSurface ? kSurfaceSymmetryToleranceRel : kExactSymmetryToleranceRel);
+}
+
+Json get_repair(const MeshOptions& o, ModelKind kind) {
+  if (kind != ModelKind::kSurface) return nullptr;
+  for (const auto& [name, repair] : kRepairs) {
+    if (repair == o.repair) return name;
+  }
+  return nullptr;
 }
 
 Json get_memory_limit(const MeshOptions& o, ModelKind) {
@@ -352,6 +378,12 @@ constexpr auto kRows = std::to_array<OptionRow>({
       "how far the model may be from symmetric, as a share of its diameter, above 0 to 0.1", kAll},
      set_symmetry_tolerance,
      get_symmetry_tolerance},
+    {{"repair", "none|safe|all|wrap", "safe",
+      "STL, OFF, PLY, OBJ: what is mended; safe: the shape stays; all: holes are closed, too; "
+      "wrap: what else would be refused is wrapped",
+      kSolids},
+     set_repair,
+     get_repair},
     {{"min_angle", "DEG", "30", "planar: smallest angle of a triangle in degrees, 0 to 42",
       kPlanar},
      set_min_angle,

@@ -15,6 +15,13 @@ Failure not_of_kind(ModelKind kind, const std::string& name) {
   return fail(ErrorCode::kBadOption, name + message, {}, "/options/" + name);
 }
 
+Failure repair_is_for_surfaces() {
+  return fail(ErrorCode::kBadOption,
+              "repair is for tessellated surfaces (STL, OFF, PLY, OBJ); nothing is mended in other "
+              "models",
+              {}, "/options/repair");
+}
+
 Failure bad_axis(const std::string& name, const std::string& message) {
   return fail(ErrorCode::kBadAxis, message, {}, "/options/" + name);
 }
@@ -26,6 +33,7 @@ Result<MeshOptions> options_for_planar(MeshOptions options) {
   if (options.min_dihedral_deg != standard.min_dihedral_deg) return refuse("min_dihedral");
   if (std::isfinite(options.max_volume)) return refuse("max_volume");
   if (options.delaunay) return refuse("delaunay");
+  if (options.repair != standard.repair) return repair_is_for_surfaces();
   if (options.axis_direction &&
       (options.axis_direction->x != 0 || options.axis_direction->y != 0)) {
     return bad_axis("axis_direction",
@@ -54,6 +62,9 @@ Result<MeshOptions> options_for_solid(ModelKind kind, MeshOptions options) {
     return bad_axis("center",
                     "a planar centre of two coordinates was given, but the model is a solid; give "
                     "axis_origin x,y,z and axis_direction x,y,z");
+  }
+  if (kind != ModelKind::kSurface && options.repair != standard.repair) {
+    return repair_is_for_surfaces();
   }
   if (options.min_angle_deg != standard.min_angle_deg) return not_of_kind(kind, "min_angle");
   if (std::isfinite(options.max_area)) return not_of_kind(kind, "max_area");

@@ -17,6 +17,14 @@ inline constexpr std::int32_t kMaxFold = 30'000;
 inline constexpr double kExactSymmetryToleranceRel = 1e-6;    // PSLG and PLC
 inline constexpr double kSurfaceSymmetryToleranceRel = 1e-3;  // tessellated surfaces
 
+// What may be done to a surface that is not closed, oriented and free of self-intersections.
+enum class Repair : std::uint8_t {
+  kNone,  // equal vertices are joined
+  kSafe,  // and what leaves the shape as it is, within the symmetry tolerance
+  kAll,   // and holes are closed, parts below the tolerance dropped
+  kWrap   // and where all that does not help the triangles are wrapped as they are
+};
+
 // Values are what a user writes in `options`; infinities mean "no bound".
 struct MeshOptions {
   std::optional<std::int32_t> fold;  // nullopt: detect; 1: no symmetry
@@ -33,6 +41,7 @@ struct MeshOptions {
   double radius_edge = 1.414;               // solids: circumradius / shortest edge
   double max_volume = kInfinity;            // solids; input units cubed
   double min_dihedral_deg = 0;              // solids: a goal of the improvement, not a promise
+  Repair repair = Repair::kSafe;            // surfaces
   bool delaunay = false;                    // solids: end with a Delaunay mesh
   double max_edge = kInfinity;              // input units
   std::int32_t order = 1;                   // 1: linear, 2: quadratic with mid-side nodes

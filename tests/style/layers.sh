@@ -28,7 +28,7 @@ forbid core 'the core knows no other layer' 'api/|server/|tests/'
 forbid core 'the core reads and writes nothing' "$json|$http|$logging|$files|$stores"
 forbid core 'the core starts no threads' "$threads"
 forbid core 'CGAL stays behind a few files: it costs 10 s a file that includes it' 'CGAL/' \
-  'core/geometry/(predicates|predicates_3|facet_triangulation|self_intersections)\.cpp|core/plane/initial/(full_cdt|initial_triangulation)\.[ch]pp|core/solid/(initial/cut_section|plc/plc_intersections|surface/mend_surface)\.cpp'
+  'core/geometry/(predicates|predicates_3|facet_triangulation|self_intersections)\.cpp|core/plane/initial/(full_cdt|initial_triangulation)\.[ch]pp|core/solid/(initial/cut_section|plc/plc_intersections|surface/(arrangement|mend_surface|wrap_surface))\.cpp'
 
 # The rooms of the core, from the ground up: each knows those named before it, the wings not each
 # other, and the checker of files no code that makes meshes.

@@ -11,7 +11,7 @@ Result<std::unique_ptr<SectorSource>> symmetrise_surface(const TriangleSurface& 
                                                          ExecutionContext& context) {
   const double tolerance_rel =
       options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel);
-  auto clean = clean_surface(surface, context, tolerance_rel);
+  auto clean = clean_surface(surface, context, tolerance_rel, options.repair);
   if (!clean) return error_of(clean);
   if (clean->problem) return fail(*clean->problem);
   auto symmetry = detect_surface_symmetry(*clean, options, context);
@@ -24,7 +24,8 @@ Result<SolidInspection> inspect_surface(const TriangleSurface& surface,
                                         const MeshOptions& options,
                                         ExecutionContext& context) {
   auto clean = clean_surface(surface, context,
-                             options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel));
+                             options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel),
+                             options.repair);
   if (!clean) return error_of(clean);
   SolidInspection result;
   result.kind = "surface";

@@ -3,16 +3,25 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <utility>
 
+#include "core/base/union_find.hpp"
 #include "core/geometry/limits.hpp"
+#include "core/geometry/predicates.hpp"
 #include "core/geometry/self_intersections.hpp"
 #include "core/geometry/surface_distance.hpp"
+#include "core/geometry/triangle_tree.hpp"
 #include "core/model/describe.hpp"
+#include "core/solid/surface/close_holes.hpp"
 #include "core/solid/surface/mend_surface.hpp"
+#include "core/solid/surface/refusals.hpp"
+#include "core/solid/surface/resolve_crossings.hpp"
 #include "core/solid/surface/shells.hpp"
 #include "core/solid/surface/t_junctions.hpp"
 #include "core/solid/surface/weld.hpp"
+#include "core/solid/surface/wrap_surface.hpp"
 
 namespace symcell::solid {
 namespace {
@@ -20,37 +29,38 @@ namespace {
 // Welding tolerances tried in turn, of the diameter: the first that closes the surface. The last is
 // well below the symmetry tolerance, so features a mesh could show survive.
 constexpr std::array<double, 8> kWeldTolerances = {1e-8, 1e-7, 5e-7, 1e-6, 2e-6, 5e-6, 1e-5, 3e-5};
-constexpr std::size_t kNamed = 5;        // edges or pairs named in a message
-constexpr std::size_t kListed = 100;     // triangles listed in an error
-constexpr std::size_t kMostPairs = 200;  // intersecting pairs looked for
+constexpr int kJunctionRounds = 3;  // a triangle with several split edges takes one a round
+// Intersecting pairs looked for: to be named, to be mended.
+constexpr std::size_t kMostNamedPairs = 200;
+constexpr std::size_t kMostPairs = 100'000;
+// What is closed by default, beside holes below the tolerance: planar ones of few edges, of the
+// diameter at most, and so flat.
+constexpr std::size_t kSimpleHoleEdges = 6;
+constexpr double kSimpleHoleRel = 0.02;
+constexpr double kFlatHoleRel = 1e-6;
+// Of the tolerance. Wraps narrower than the least share of the diameter would take forever.
+constexpr double kWrapAlpha = 10;
+constexpr double kWrapOffset = 0.5;
+constexpr double kLeastWrapRel = 2e-4;
 
-// Mending slivers that cross each other changes the volume by far less.
-constexpr double kMendedVolumeRel = 1e-4;
+const char* const kSafeHelps = "repair=safe mends it where the shape stays as it is";
+const char* const kWrapHelps =
+    "mend it in the CAD program and export again, or wrap the triangles by repair=wrap";
 
-std::string plural(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
-struct OpenEdge {
-  std::int32_t a, b;
-  std::int32_t triangle;
-  std::size_t uses;
-};
-
-std::vector<OpenEdge> open_edges(const IndexedSurface& surface) {
-  std::vector<OpenEdge> open;
-  const std::vector<EdgeUse> uses = sorted_edge_uses(surface.triangles);
-  for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
-    if (end - begin == 2) return;
-    open.push_back({uses[begin].low, uses[begin].high, uses[begin].triangle, end - begin});
-  });
-  return open;
+bool lie_in_line(const IndexedSurface& s, const Triangle& t) {
+  const Point3 &a = s.points[t[0]], &b = s.points[t[1]], &c = s.points[t[2]];
+  return orientation(Point2{a.x, a.y}, Point2{b.x, b.y}, Point2{c.x, c.y}) == Sign::kZero &&
+         orientation(Point2{a.y, a.z}, Point2{b.y, b.z}, Point2{c.y, c.z}) == Sign::kZero &&
+         orientation(Point2{a.z, a.x}, Point2{b.z, b.x}, Point2{c.z, c.x}) == Sign::kZero;
 }
 
 class Cleaner {
  public:
-  Cleaner(const TriangleSurface& input, ExecutionContext& context, double tolerance_rel)
-      : input_(input), context_(context), tolerance_rel_(tolerance_rel) {}
+  Cleaner(const TriangleSurface& input,
+          ExecutionContext& context,
+          double tolerance_rel,
+          Repair repair)
+      : input_(input), context_(context), tolerance_rel_(tolerance_rel), repair_(repair) {}
 
   Result<CleanSurface> run() {
     SYMCELL_TRY(check_input());
@@ -66,11 +76,9 @@ class Cleaner {
                   "the surface is too small: " + describe_number(result_.diameter) +
                       " across; check its units");
     }
-    for (auto step : {&Cleaner::close, &Cleaner::orient, &Cleaner::remove_flat,
-                      &Cleaner::check_intersections}) {
-      auto done = (this->*step)();
-      if (!done) return error_of(done);
-      if (result_.problem) break;
+    SYMCELL_TRY(mend());
+    if (result_.problem && repair_ == Repair::kWrap) {
+      SYMCELL_TRY(wrap());
     }
     const Point3 centre = 0.5 * (result_.box.low + result_.box.high);
     result_.area = surface_area(surface());
@@ -84,6 +92,27 @@ class Cleaner {
 
  private:
   [[nodiscard]] IndexedSurface& surface() { return result_.surface; }
+  [[nodiscard]] double tolerance() const { return tolerance_rel_ * result_.diameter; }
+  [[nodiscard]] bool untouched() const { return repair_ == Repair::kNone; }
+  // Holes and small parts too.
+  [[nodiscard]] bool bold() const { return repair_ == Repair::kAll || repair_ == Repair::kWrap; }
+
+  void refuse(ErrorCode code, std::string message, std::vector<std::int64_t> triangles) {
+    result_.problem = Error{code, std::move(message), listed(std::move(triangles)), {}};
+  }
+
+  Result<void> mend() {
+    for (auto step : {&Cleaner::drop_doubled, &Cleaner::drop_small, &Cleaner::close,
+                      &Cleaner::orient, &Cleaner::remove_flat, &Cleaner::resolve}) {
+      auto done = (this->*step)();
+      if (!done) return done;
+      if (result_.problem) break;
+    }
+    if (turned_shells_ > 0) {
+      result_.repairs.push_back(plural(turned_shells_, "closed shell") + " turned inside out");
+    }
+    return {};
+  }
 
   [[nodiscard]] Result<void> check_input() const {
     if (input_.triangles.empty()) {
@@ -120,64 +149,165 @@ class Cleaner {
     return {};
   }
 
-  Result<void> close() {
-    const std::size_t doubled = drop_doubled_triangles(surface());
-    if (doubled > 0) result_.repairs.push_back(plural(doubled, "doubled triangle") + " removed");
+  Result<void> drop_doubled() {
+    IndexedSurface cancelled;
+    IndexedSurface single = surface();
+    const std::vector<Point3> dropped = drop_doubled_triangles(single, &cancelled);
+    if (dropped.empty()) return {};
+    if (untouched()) {
+      refuse(ErrorCode::kSelfIntersection,
+             plural(dropped.size(), "triangle") + (dropped.size() == 1 ? " is" : " are") +
+                 " given more than once" + such_as_at(dropped) + "; " + kSafeHelps,
+             {});
+      return {};
+    }
+    surface() = std::move(single);
+    // One triangle given from both sides may be part of the surface all the same.
+    const std::size_t restored = restore_needed(surface(), cancelled);
+    result_.repairs.push_back(plural(dropped.size() - restored, "doubled triangle") + " removed" +
+                              such_as_at(dropped));
     if (surface().triangles.empty()) {
       return fail(ErrorCode::kDegenerateGeometry,
                   "every triangle of the surface occurs from both sides: sheets enclose no volume; "
                   "give each face once, seen from outside");
     }
-    std::vector<OpenEdge> open = open_edges(surface());
-    if (open.empty()) return {};
-    for (const double tolerance : kWeldTolerances) {
-      SYMCELL_TRY(context_.check());
-      IndexedSurface welded = weld_within(surface(), tolerance * result_.diameter);
-      if (welded.triangles.empty() || !open_edges(welded).empty()) continue;
-      result_.repairs.push_back(
-          "vertices welded within " + describe_rounded(tolerance * result_.diameter) + ": " +
-          plural(surface().points.size() - welded.points.size(), "vertex pair") + " joined, " +
-          plural(surface().triangles.size() - welded.triangles.size(), "triangle") + " dropped");
-      surface() = std::move(welded);
-      return {};
-    }
-    IndexedSurface split = surface();
-    const std::size_t joints = split_at_t_junctions(split, kJunctionRel * result_.diameter);
-    if (joints > 0 && open_edges(split).empty()) {
-      surface() = std::move(split);
-      result_.repairs.push_back(plural(joints, "vertex") +
-                                " inside edges of other triangles joined");
-      return {};
-    }
-    report_open(open);
     return {};
   }
 
-  void report_open(const std::vector<OpenEdge>& open) {
-    std::string message = "the surface is not closed: " + plural(open.size(), "edge") +
-                          (open.size() == 1 ? " does" : " do") + " not have two triangles, such as";
-    std::vector<std::int64_t> elements;
-    for (std::size_t i = 0; i < open.size() && i < kNamed; ++i) {
-      const OpenEdge& e = open[i];
-      message += (i == 0 ? " " : "; ") + std::string("the edge from ") +
-                 describe_point(surface().points[e.a]) + " to " +
-                 describe_point(surface().points[e.b]) + " of triangle " +
-                 std::to_string(surface().source[e.triangle]) + " (" + plural(e.uses, "triangle") +
-                 ")";
+  // Pieces over common edges whose box is below the tolerance.
+  Result<void> drop_small() {
+    if (!bold()) return {};
+    UnionFind pieces(surface().triangles.size());
+    const std::vector<EdgeUse> uses = sorted_edge_uses(surface().triangles);
+    for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin + 1; i < end; ++i) {
+        pieces.join(uses[begin].triangle, uses[i].triangle);
+      }
+    });
+    std::map<std::int32_t, std::vector<Point3>> corners;
+    const auto count = static_cast<std::int32_t>(surface().triangles.size());
+    for (std::int32_t t = 0; t < count; ++t) {
+      for (const std::int32_t v : surface().triangles[t]) {
+        corners[pieces.root(t)].push_back(surface().points[v]);
+      }
     }
-    for (std::size_t i = 0; i < open.size() && i < kListed; ++i) {
-      elements.push_back(surface().source[open[i].triangle]);
+    std::vector<Point3> dropped;
+    std::vector<bool> small(surface().triangles.size(), false);
+    for (const auto& [piece, points] : corners) {
+      small[piece] = bounding_box(points).diagonal() <= tolerance();
+      if (small[piece]) dropped.push_back(points.front());
     }
-    std::sort(elements.begin(), elements.end());
-    elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
-    result_.problem = Error{ErrorCode::kNotWatertight,
-                            message + ". Close the holes in the CAD program and export again",
-                            std::move(elements),
-                            {}};
+    if (dropped.empty() || dropped.size() == corners.size()) return {};
+    IndexedSurface kept;
+    kept.points = surface().points;
+    for (std::int32_t t = 0; t < count; ++t) {
+      if (small[pieces.root(t)]) continue;
+      kept.triangles.push_back(surface().triangles[t]);
+      kept.source.push_back(surface().source[t]);
+    }
+    drop_unused_points(kept);
+    surface() = std::move(kept);
+    result_.repairs.push_back(plural(dropped.size(), "part") + " no larger than " +
+                              describe_rounded(tolerance()) + " dropped" + such_as_at(dropped));
+    return {};
+  }
+
+  // Leaves no edge with an odd number of triangles; first without any that has four.
+  Result<void> close() {
+    const std::vector<OddEdge> odd = odd_edges(surface());
+    if (untouched()) {
+      const std::vector<OddEdge> four = branching_edges(surface());
+      if (!odd.empty() || !four.empty()) {
+        result_.problem = refuse_open(surface(), odd.empty() ? four : odd, kSafeHelps);
+      }
+      return {};
+    }
+    if (odd.empty()) return {};
+    Best best{surface(), odd.size(), {}};
+    for (const bool branching : {false, true}) {
+      for (const double share : kWeldTolerances) {
+        SYMCELL_TRY(context_.check());
+        IndexedSurface welded = weld_within(surface(), share * result_.diameter);
+        if (welded.triangles.empty()) continue;
+        const std::string sentence =
+            "vertices welded within " + describe_rounded(share * result_.diameter) + ": " +
+            plural(surface().points.size() - welded.points.size(), "vertex pair") + " joined, " +
+            plural(surface().triangles.size() - welded.triangles.size(), "triangle") + " dropped";
+        if (take_closed(std::move(welded), sentence, branching, best)) return {};
+      }
+    }
+    IndexedSurface split = surface();
+    std::size_t joints = 0;
+    for (int i = 0; i < kJunctionRounds; ++i) {
+      const std::size_t more = split_at_t_junctions(split, kJunctionRel * result_.diameter);
+      joints += more;
+      if (more == 0) break;
+    }
+    if (joints > 0 &&
+        take_closed(std::move(split),
+                    plural(joints, "vertex") + " inside edges of other triangles joined", true,
+                    best)) {
+      return {};
+    }
+    return close_holes_of(std::move(best), odd);
+  }
+
+  // The way of welding that leaves the fewest odd edges.
+  struct Best {
+    IndexedSurface surface;
+    std::size_t odd = 0;
+    std::string sentence;
+  };
+
+  bool take_closed(IndexedSurface candidate,
+                   const std::string& sentence,
+                   bool branching,
+                   Best& best) {
+    const std::size_t odd = odd_edges(candidate).size();
+    if (odd == 0 && (branching || branching_edges(candidate).empty())) {
+      surface() = std::move(candidate);
+      result_.repairs.push_back(sentence);
+      return true;
+    }
+    if (odd > 0 && odd < best.odd) best = {std::move(candidate), odd, sentence};
+    return false;
+  }
+
+  Result<void> close_holes_of(Best best, const std::vector<OddEdge>& odd) {
+    const double flat = kFlatHoleRel * result_.diameter;
+    const HoleLimits limits =
+        bold() ? every_hole(flat, tolerance())
+               : HoleLimits{tolerance(), kSimpleHoleEdges, kSimpleHoleRel * result_.diameter, flat,
+                            tolerance()};
+    auto closed = close_holes(best.surface, limits, context_);
+    if (!closed) return error_of(closed);
+    const std::vector<OddEdge> left = odd_edges(best.surface);
+    if (left.empty()) {
+      surface() = std::move(best.surface);
+      if (!best.sentence.empty()) result_.repairs.push_back(best.sentence);
+      result_.repairs.push_back(plural(closed->count, "hole") + " up to " +
+                                describe_rounded(closed->largest) + " across closed by " +
+                                plural(closed->triangles, "triangle") + such_as_at(closed->places));
+      return {};
+    }
+    std::string help = bold() ? std::string(kWrapHelps)
+                              : "Close the holes in the CAD program and export again, or let "
+                                "repair=all close them";
+    if (!closed->sheets.empty()) {
+      help =
+          plural(closed->sheets.size(), "part") + (closed->sheets.size() == 1 ? " is" : " are") +
+          " an open sheet without thickness" + such_as_at(closed->sheets) +
+          ": no closing of holes makes it solid; give it a thickness in the CAD program, or wrap "
+          "the triangles by repair=wrap";
+    }
+    // What stays is told of the surface as it was read.
+    result_.problem = refuse_open(surface(), odd, help);
+    return {};
   }
 
   Result<void> orient() {
-    auto shells = orient_shells(surface(), context_);
+    IndexedSurface oriented = surface();
+    auto shells = orient_shells(oriented, context_);
     if (!shells) {
       const ErrorCode code = shells.error().code;
       if (code != ErrorCode::kNotWatertight && code != ErrorCode::kDegenerateGeometry) {
@@ -186,22 +316,53 @@ class Cleaner {
       result_.problem = shells.error();
       return {};
     }
+    if (untouched() && (shells->flipped_alone > 0 || shells->flipped_shells > 0)) {
+      std::vector<Point3> places;
+      std::vector<std::int64_t> triangles;
+      for (std::size_t t = 0; t < oriented.triangles.size(); ++t) {
+        if (oriented.triangles[t] == surface().triangles[t]) continue;
+        places.push_back(surface().points[surface().triangles[t][0]]);
+        triangles.push_back(surface().source[t]);
+      }
+      refuse(ErrorCode::kNotWatertight,
+             plural(places.size(), "triangle") + (places.size() == 1 ? " is" : " are") +
+                 " seen from outside the wrong way round" + such_as_at(places) + "; " + kSafeHelps,
+             std::move(triangles));
+      return {};
+    }
+    surface() = std::move(oriented);
     result_.shells = shells->count;
     if (shells->flipped_alone > 0) {
       result_.repairs.push_back(plural(shells->flipped_alone, "triangle") +
                                 " flipped to agree with their neighbours");
     }
-    if (shells->flipped_shells > 0) {
-      result_.repairs.push_back(plural(shells->flipped_shells, "closed shell") +
-                                " turned inside out");
+    turned_shells_ = shells->flipped_shells;
+    for (std::size_t t = 0; t < surface().triangles.size(); ++t) {
+      if (shells->turned[shells->of_triangle[t]]) turned_sources_.push_back(surface().source[t]);
     }
+    std::sort(turned_sources_.begin(), turned_sources_.end());
     return {};
   }
 
   Result<void> remove_flat() {
+    if (untouched()) {
+      for (std::size_t t = 0; t < surface().triangles.size(); ++t) {
+        if (!lie_in_line(surface(), surface().triangles[t])) continue;
+        refuse(ErrorCode::kDegenerateGeometry,
+               "triangle " + std::to_string(surface().source[t]) +
+                   near_triangle(surface(), static_cast<std::int32_t>(t)) + " has no area; " +
+                   kSafeHelps,
+               {surface().source[t]});
+        return {};
+      }
+      return {};
+    }
     std::optional<IndexedSurface> cleaned = remove_flat_triangles(surface());
     // What stays is left to the checks of the sector.
-    if (!cleaned || cleaned->triangles.empty() || !open_edges(*cleaned).empty()) return {};
+    if (!cleaned || cleaned->triangles.empty() || !odd_edges(*cleaned).empty() ||
+        branching_edges(*cleaned).size() > branching_edges(surface()).size()) {
+      return {};
+    }
     const std::size_t before = surface().triangles.size();
     const std::size_t after = cleaned->triangles.size();
     if (before != after) {
@@ -212,73 +373,176 @@ class Cleaner {
     return {};
   }
 
-  Result<void> check_intersections() {
-    auto pairs = self_intersections(surface(), kMostPairs, context_);
+  // Where triangles intersect or edges have four triangles: the boundary of what is inside.
+  Result<void> resolve() {
+    const std::size_t most = untouched() ? kMostNamedPairs : kMostPairs;
+    auto pairs = self_intersections(surface(), most, context_);
     if (!pairs) return error_of(pairs);
-    if (pairs->empty()) return {};
-    if (pairs->size() < kMostPairs) {
-      auto mended = mend(pairs->size());
-      if (!mended) return error_of(mended);
-      if (*mended) return {};
+    const std::vector<OddEdge> touching = branching_edges(surface());
+    if (pairs->empty() && touching.empty()) return {};
+    std::string reason;
+    const bool more = pairs->size() == most;
+    if (!untouched() && !more) {
+      auto resolved = resolved_surface(*pairs, reason);
+      if (!resolved) return error_of(resolved);
+      if (*resolved) {
+        record(**resolved, *pairs, touching);
+        surface() = std::move((*resolved)->surface);
+        return orient_resolved();
+      }
     }
-    const std::string count = pairs->size() == kMostPairs ? "more than " : "";
-    std::string message = "the surface intersects itself: " + count +
-                          plural(pairs->size(), "pair") + " of triangles, such as";
-    std::vector<std::int64_t> elements;
-    for (std::size_t i = 0; i < pairs->size() && i < kListed; ++i) {
-      const auto [s, t] = (*pairs)[i];
-      elements.push_back(surface().source[s]);
-      elements.push_back(surface().source[t]);
-      if (i >= kNamed) continue;
-      const Triangle& v = surface().triangles[s];
-      const Point3 centre =
-          (1.0 / 3) * (surface().points[v[0]] + surface().points[v[1]] + surface().points[v[2]]);
-      message += (i == 0 ? " " : "; ") + std::to_string(surface().source[s]) + " and " +
-                 std::to_string(surface().source[t]) + " near " + describe_point(centre);
+    const std::string help = untouched()
+                                 ? std::string(kSafeHelps)
+                                 : "Unite overlapping bodies in the CAD program and export again, "
+                                   "or wrap the triangles by repair=wrap";
+    if (!pairs->empty()) {
+      result_.problem = refuse_intersecting(surface(), *pairs, more, reason, help);
+    } else {
+      result_.problem =
+          refuse_open(surface(), touching, (reason.empty() ? "" : reason + ". ") + help);
     }
-    std::sort(elements.begin(), elements.end());
-    elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
-    result_.problem =
-        Error{ErrorCode::kSelfIntersection,
-              message + ". Unite overlapping bodies in the CAD program and export again",
-              std::move(elements),
-              {}};
     return {};
   }
 
-  // Takes the mended surface if nothing is wrong with it, and its volume and places are those of
-  // before.
-  Result<bool> mend(std::size_t count) {
-    std::optional<IndexedSurface> mended = mend_intersections(surface());
-    if (!mended) return false;
-    const Point3 centre = 0.5 * (result_.box.low + result_.box.high);
-    const double before = enclosed_volume(surface(), centre);
-    const double after = enclosed_volume(*mended, centre);
-    if (std::abs(after - before) > kMendedVolumeRel * std::abs(before)) return false;
-    if (!open_edges(*mended).empty()) return false;
-    auto left = self_intersections(*mended, 1, context_);
+  Result<std::optional<Resolved>> resolved_surface(
+      const std::vector<std::pair<std::int32_t, std::int32_t>>& pairs, std::string& reason) {
+    // Which shells lie in which is another question for those that meet: as they were read.
+    IndexedSurface oriented = surface();
+    for (std::size_t t = 0; t < oriented.triangles.size(); ++t) {
+      Triangle& corners = oriented.triangles[t];
+      if (std::binary_search(turned_sources_.begin(), turned_sources_.end(), oriented.source[t])) {
+        std::swap(corners[1], corners[2]);
+      }
+    }
+    const auto shells = orient_shells(oriented, context_, pairs);
+    if (!shells) {
+      if (is_limit(shells.error().code)) return error_of(shells);
+      reason = shells.error().message;
+      return std::optional<Resolved>();
+    }
+    const std::vector<bool>& turned = shells->turned;
+    for (const auto& [s, t] : pairs) {
+      const std::int32_t a = shells->of_triangle[s], b = shells->of_triangle[t];
+      if (bold() || a == b || shells->depth[a] != shells->depth[b] || turned[a] == turned[b]) {
+        continue;
+      }
+      reason = "shells meet" + near_triangle(surface(), s) +
+               " that look to different sides: whether one is a body or a hollow is not known "
+               "(repair=all takes both as bodies)";
+      return std::optional<Resolved>();
+    }
+    auto resolved = resolve_crossings(oriented, pairs, tolerance(), context_, reason);
+    if (resolved && *resolved) {
+      turned_shells_ = static_cast<std::size_t>(std::count(turned.begin(), turned.end(), true));
+    }
+    return resolved;
+  }
+
+  void record(const Resolved& resolved,
+              const std::vector<std::pair<std::int32_t, std::int32_t>>& pairs,
+              const std::vector<OddEdge>& touching) {
+    if (!pairs.empty()) {
+      std::string sentence = plural(pairs.size(), "pair") +
+                             " of intersecting triangles cut along each other" +
+                             near_triangle(surface(), pairs.front().first) +
+                             (pairs.size() > 1 ? " and elsewhere" : "");
+      if (resolved.overlap_volume > 0) {
+        sentence += "; a volume of " + describe_rounded(resolved.overlap_volume) +
+                    " that was covered more than once is united";
+      }
+      if (resolved.inverted_volume > 0) {
+        sentence += "; a volume of " + describe_rounded(resolved.inverted_volume) +
+                    " that was inside out is left out";
+      }
+      if (resolved.cancelled_area > 0) {
+        sentence += "; faces that lay on each other from both sides, an area of " +
+                    describe_rounded(resolved.cancelled_area) + ", are left out";
+      }
+      if (resolved.voids > 0) {
+        sentence += "; " + plural(resolved.voids, "void") + " thinner than " +
+                    describe_rounded(tolerance()) + " filled, a volume of " +
+                    describe_rounded(resolved.void_volume);
+      }
+      result_.repairs.push_back(std::move(sentence));
+    }
+    if (resolved.split_edges > 0) {
+      std::vector<Point3> places;
+      for (const OddEdge& e : touching) places.push_back(surface().points[e.a]);
+      result_.repairs.push_back(plural(resolved.split_edges, "edge") +
+                                " at which the solid touches itself split, the sheets moved apart "
+                                "by twice " +
+                                describe_rounded(resolved.gap) + such_as_at(places));
+    }
+  }
+
+  Result<void> orient_resolved() {
+    const auto shells = orient_shells(surface(), context_);
+    if (!shells) {
+      if (is_limit(shells.error().code)) return error_of(shells);
+      result_.problem = shells.error();
+      return {};
+    }
+    result_.shells = shells->count;
+    return remove_flat();
+  }
+
+  // The last resort: from the triangles as they were read.
+  Result<void> wrap() {
+    const IndexedSurface soup = weld_exactly(input_);
+    const double unit = std::max(tolerance(), kLeastWrapRel * result_.diameter);
+    const double offset = kWrapOffset * tolerance();
+    auto wrapped = wrap_surface(soup, kWrapAlpha * unit, offset, context_);
+    if (!wrapped) {
+      if (is_limit(wrapped.error().code)) return error_of(wrapped);
+      result_.problem->message += "; " + wrapped.error().message;
+      return {};
+    }
+    auto left = self_intersections(*wrapped, 1, context_);
     if (!left) return error_of(left);
-    if (!left->empty()) return false;
-    // What lies between shells that overlap may be filled, or cut away.
-    if (!are_near(surface(), *mended, tolerance_rel_ * result_.diameter)) return false;
-    result_.repairs.push_back(plural(count, "pair") + " of intersecting triangles mended, volume " +
-                              "changed by " + describe_rounded(after - before));
-    surface() = std::move(*mended);
-    return true;
+    if (!left->empty()) {
+      result_.problem->message += "; the wrap of the triangles intersects itself";
+      return {};
+    }
+    const double reach = farthest_sample(*wrapped, soup);
+    const std::string why = result_.problem->message;
+    result_.problem.reset();
+    surface() = std::move(*wrapped);
+    SYMCELL_TRY(orient());
+    result_.repairs = {"the triangles were wrapped by a surface " + describe_rounded(offset) +
+                       " outside of them that closes gaps below " +
+                       describe_rounded(kWrapAlpha * unit) + ", at most " +
+                       describe_rounded(reach) + " away, because " + why};
+    return {};
+  }
+
+  // Of `from`, its farthest sample from `to`.
+  static double farthest_sample(const IndexedSurface& from, const IndexedSurface& to) {
+    const TriangleTree tree(to.points, to.triangles);
+    double farthest2 = 0;
+    std::int32_t last = -1;
+    for (const Point3& p : samples_of(from)) {
+      const auto hit = tree.nearest(p, std::numeric_limits<double>::infinity(), last);
+      farthest2 = std::max(farthest2, hit.squared);
+    }
+    return std::sqrt(farthest2);
   }
 
   const TriangleSurface& input_;
   ExecutionContext& context_;
   double tolerance_rel_;
+  Repair repair_;
   CleanSurface result_;
+  std::size_t turned_shells_ = 0;
+  std::vector<std::int32_t> turned_sources_;  // of triangles of shells that were turned, ascending
 };
 
 }  // namespace
 
 Result<CleanSurface> clean_surface(const TriangleSurface& input,
                                    ExecutionContext& context,
-                                   double tolerance_rel) {
-  return Cleaner(input, context, tolerance_rel).run();
+                                   double tolerance_rel,
+                                   Repair repair) {
+  return Cleaner(input, context, tolerance_rel, repair).run();
 }
 
 }  // namespace symcell::solid

@@ -28,12 +28,14 @@ struct CleanSurface {
   Box3 box;
 };
 
-// `tolerance_rel`: of the diameter; mending moves the surface by no more.
+// `tolerance_rel`: of the diameter; mending moves the surface by no more, closing of holes and
+// wrapping apart.
 // Errors: kEmptyFile (no triangles), kIndexOutOfRange, kNonFinite, kCoordinateRange,
 // kDegenerateGeometry (all in one point), limits. What can be inspected is a `problem` instead.
 [[nodiscard]] Result<CleanSurface> clean_surface(
     const TriangleSurface& input,
     ExecutionContext& context,
-    double tolerance_rel = kSurfaceSymmetryToleranceRel);
+    double tolerance_rel = kSurfaceSymmetryToleranceRel,
+    Repair repair = Repair::kSafe);
 
 }  // namespace symcell::solid

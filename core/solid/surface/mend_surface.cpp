@@ -3,7 +3,6 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/repair_degeneracies.h>
-#include <CGAL/Polygon_mesh_processing/repair_self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
@@ -72,11 +71,6 @@ std::optional<IndexedSurface> remove_flat_triangles(const IndexedSurface& surfac
       [&](const Triangle& t) { return CGAL::collinear(point(t[0]), point(t[1]), point(t[2])); });
   if (!any) return surface;
   return mended_by(surface, [](Mesh& mesh) { return PMP::remove_degenerate_faces(mesh); });
-}
-
-std::optional<IndexedSurface> mend_intersections(const IndexedSurface& surface) {
-  return mended_by(surface,
-                   [](Mesh& mesh) { return PMP::experimental::remove_self_intersections(mesh); });
 }
 
 }  // namespace symcell::solid

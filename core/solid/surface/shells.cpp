@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
+#include <map>
 #include <string>
 #include <utility>
 
+#include "core/base/union_find.hpp"
+#include "core/geometry/triangle_tree.hpp"
 #include "core/model/describe.hpp"
+#include "core/solid/surface/winding.hpp"
 
 namespace symcell::solid {
 namespace {
@@ -15,6 +17,11 @@ namespace {
 // A shell thinner than this share of its box is no body: its volume's sign would be noise.
 constexpr double kFlatVolumeRel = 1e-12;
 constexpr std::size_t kCheckEvery = 512;  // shells, each against all others
+// Of a shell that meets another, so many triangles at most are looked at, those that lie on it, to a
+// share of the diameter, apart.
+constexpr std::size_t kMostLookedAt = 2000;
+constexpr double kOnShellRel = 1e-7;
+constexpr double kSurelyOutside = 0.25, kSurelyInside = 0.75;
 
 struct Neighbour {
   std::int32_t triangle = -1;
@@ -42,24 +49,6 @@ std::vector<std::array<Neighbour, 3>> neighbours_of(std::span<const Triangle> tr
   return result;
 }
 
-// Solid angle of the shell seen from p over 4 pi: 1 inside a closed surface, 0 outside.
-// Source: [van Oosterom-Strackee83].
-double winding_number(const IndexedSurface& surface,
-                      const std::vector<std::int32_t>& triangles,
-                      Point3 p) {
-  double sum = 0;
-  for (const std::int32_t t : triangles) {
-    const Triangle& v = surface.triangles[t];
-    const Point3 a = surface.points[v[0]] - p;
-    const Point3 b = surface.points[v[1]] - p;
-    const Point3 c = surface.points[v[2]] - p;
-    const double la = length(a), lb = length(b), lc = length(c);
-    const double denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-    sum += 2 * std::atan2(dot(a, cross(b, c)), denominator);
-  }
-  return sum / (4 * std::numbers::pi);
-}
-
 bool encloses(const Box3& outer, const Box3& inner) {
   return outer.low.x <= inner.low.x && outer.low.y <= inner.low.y && outer.low.z <= inner.low.z &&
          outer.high.x >= inner.high.x && outer.high.y >= inner.high.y &&
@@ -68,11 +57,14 @@ bool encloses(const Box3& outer, const Box3& inner) {
 
 class Orienter {
  public:
-  Orienter(IndexedSurface& surface, ExecutionContext& context)
-      : surface_(surface), context_(context) {}
+  Orienter(IndexedSurface& surface,
+           ExecutionContext& context,
+           std::span<const std::pair<std::int32_t, std::int32_t>> crossing)
+      : surface_(surface), context_(context), crossing_(crossing) {}
 
   Result<Shells> run() {
     SYMCELL_TRY(agree());
+    SYMCELL_TRY(join_at_edges());
     SYMCELL_TRY(nest());
     return std::move(shells_);
   }
@@ -123,6 +115,91 @@ class Orienter {
     return {};
   }
 
+  // Shells with as many triangles one way as the other at every edge stand alone.
+  Result<void> join_at_edges() {
+    const std::vector<EdgeUse> uses = sorted_edge_uses(surface_.triangles);
+    UnionFind joined(members_.size());
+    Result<void> state;
+    for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
+      if (!state || end - begin == 2) return;
+      std::map<std::int32_t, std::int32_t> net;  // by shell
+      std::int32_t sum = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::int32_t step = uses[i].forward ? 1 : -1;
+        net[shells_.of_triangle[uses[i].triangle]] += step;
+        sum += step;
+      }
+      if (sum != 0) {
+        const EdgeUse& use = uses[begin];
+        state = fail(ErrorCode::kNotWatertight,
+                     std::to_string(end - begin) + " triangles at the edge from " +
+                         describe_point(surface_.points[use.low]) + " to " +
+                         describe_point(surface_.points[use.high]) + ", such as " +
+                         std::to_string(surface_.source[use.triangle]) +
+                         ", cannot be told apart: as many must run one way as the other",
+                     {surface_.source[use.triangle]});
+        return;
+      }
+      std::int32_t first = -1;
+      for (const auto& [shell, steps] : net) {
+        if (steps == 0) continue;
+        if (first < 0) first = shell;
+        joined.join(first, shell);
+      }
+    });
+    if (!state) return state;
+    std::vector<std::int32_t> number(members_.size(), -1);
+    std::vector<std::vector<std::int32_t>> members;
+    for (std::size_t s = 0; s < members_.size(); ++s) {
+      std::int32_t& n = number[joined.root(static_cast<std::int32_t>(s))];
+      if (n < 0) {
+        n = static_cast<std::int32_t>(members.size());
+        members.emplace_back();
+      }
+      members[n].insert(members[n].end(), members_[s].begin(), members_[s].end());
+    }
+    members_ = std::move(members);
+    shells_.count = static_cast<std::int32_t>(members_.size());
+    for (std::size_t s = 0; s < members_.size(); ++s) {
+      for (const std::int32_t t : members_[s]) {
+        shells_.of_triangle[t] = static_cast<std::int32_t>(s);
+      }
+    }
+    return {};
+  }
+
+  // Pairs of shells that meet, the smaller number first.
+  [[nodiscard]] std::vector<std::pair<std::int32_t, std::int32_t>> meeting_shells() const {
+    std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+    for (const auto& [a, b] : crossing_) {
+      const auto pair = std::minmax(shells_.of_triangle[a], shells_.of_triangle[b]);
+      if (pair.first != pair.second) pairs.emplace_back(pair);
+    }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
+  }
+
+  // For shells that meet.
+  [[nodiscard]] Result<bool> wholly_inside(std::size_t inner, std::size_t outer) const {
+    const std::size_t step = members_[inner].size() / kMostLookedAt + 1;
+    std::vector<Triangle> triangles;
+    for (const std::int32_t t : members_[outer]) triangles.push_back(surface_.triangles[t]);
+    const TriangleTree tree(surface_.points, triangles);
+    const double on = kOnShellRel * bounding_box(surface_.points).diagonal();
+    bool inside = false;
+    for (std::size_t i = 0; i < members_[inner].size(); i += step) {
+      SYMCELL_TRY(context_.check());
+      const std::int32_t t = members_[inner][i];
+      const Point3 middle = (1.0 / 3) * (point(t, 0) + point(t, 1) + point(t, 2));
+      if (tree.within(middle, on)) continue;
+      const double w = std::abs(winding_number(surface_, members_[outer], middle));
+      if (w < kSurelyOutside) return false;
+      inside |= w > kSurelyInside;
+    }
+    return inside;
+  }
+
   Result<void> nest() {
     const auto count = static_cast<std::size_t>(shells_.count);
     std::vector<Box3> boxes(count);
@@ -149,12 +226,23 @@ class Orienter {
       positive_.push_back(sixfold > 0);
     }
     shells_.depth.assign(count, 0);
+    shells_.turned.assign(count, false);
+    const auto meeting = meeting_shells();
     for (std::size_t s = 0; s < count; ++s) {
       if (s % kCheckEvery == 0) {
         SYMCELL_TRY(context_.check());
       }
       for (std::size_t o = 0; o < count; ++o) {
         if (o == s || !encloses(boxes[o], boxes[s])) continue;
+        const std::pair<std::int32_t, std::int32_t> both =
+            std::minmax(static_cast<std::int32_t>(s), static_cast<std::int32_t>(o));
+        if (std::binary_search(meeting.begin(), meeting.end(), both)) {
+          if (positive_[s] == positive_[o]) continue;
+          const auto inside = wholly_inside(s, o);
+          if (!inside) return error_of(inside);
+          if (*inside) ++shells_.depth[s];
+          continue;
+        }
         const double w = winding_number(surface_, members_[o], point(members_[s].front(), 0));
         if (std::abs(w) > 0.5) ++shells_.depth[s];
       }
@@ -162,6 +250,7 @@ class Orienter {
     for (std::size_t s = 0; s < count; ++s) {
       if (positive_[s] == (shells_.depth[s] % 2 == 0)) continue;
       for (const std::int32_t t : members_[s]) turn(t);
+      shells_.turned[s] = true;
       ++shells_.flipped_shells;
     }
     return {};
@@ -173,6 +262,7 @@ class Orienter {
 
   IndexedSurface& surface_;
   ExecutionContext& context_;
+  std::span<const std::pair<std::int32_t, std::int32_t>> crossing_;
   Shells shells_;
   std::vector<std::vector<std::int32_t>> members_;  // triangles of each shell
   std::vector<bool> positive_;
@@ -180,8 +270,10 @@ class Orienter {
 
 }  // namespace
 
-Result<Shells> orient_shells(IndexedSurface& surface, ExecutionContext& context) {
-  return Orienter(surface, context).run();
+Result<Shells> orient_shells(IndexedSurface& surface,
+                             ExecutionContext& context,
+                             std::span<const std::pair<std::int32_t, std::int32_t>> crossing) {
+  return Orienter(surface, context, crossing).run();
 }
 
 }  // namespace symcell::solid

@@ -91,7 +91,11 @@ IndexedSurface weld_exactly(const TriangleSurface& surface) {
     all.source.resize(all.triangles.size());
     std::iota(all.source.begin(), all.source.end(), 0);
   }
-  IndexedSurface merged = merge_points(all, first_of_equals(all.points));
+  return weld_exactly(all);
+}
+
+IndexedSurface weld_exactly(const IndexedSurface& surface) {
+  IndexedSurface merged = merge_points(surface, first_of_equals(surface.points));
   drop_unused_points(merged);
   return merged;
 }
@@ -148,7 +152,7 @@ IndexedSurface weld_within(const IndexedSurface& surface, double tolerance) {
   return merged;
 }
 
-std::size_t drop_doubled_triangles(IndexedSurface& surface) {
+std::vector<Point3> drop_doubled_triangles(IndexedSurface& surface, IndexedSurface* cancelled) {
   struct Entry {
     Triangle corners;  // ascending
     std::int32_t triangle;
@@ -172,20 +176,65 @@ std::size_t drop_doubled_triangles(IndexedSurface& surface) {
     for (; end != entries.end() && end->corners == begin->corners; ++end) {
       (end->even ? has_even : has_odd) = true;
     }
-    if (!(has_even && has_odd)) ++begin;
+    if (!(has_even && has_odd)) {
+      ++begin;
+    } else if (cancelled != nullptr) {
+      cancelled->triangles.push_back(surface.triangles[begin->triangle]);
+      cancelled->source.push_back(surface.source[begin->triangle]);
+    }
     for (; begin != end; ++begin) dropped[begin->triangle] = true;
   }
   std::size_t out = 0;
+  std::vector<Point3> places;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    if (dropped[t]) continue;
+    if (dropped[t]) {
+      places.push_back(surface.points[surface.triangles[t][0]]);
+      continue;
+    }
     surface.triangles[out] = surface.triangles[t];
     surface.source[out] = surface.source[t];
     ++out;
   }
-  const std::size_t count = surface.triangles.size() - out;
   surface.triangles.resize(out);
   surface.source.resize(out);
-  return count;
+  return places;
+}
+
+std::size_t restore_needed(IndexedSurface& surface, const IndexedSurface& cancelled) {
+  std::vector<Triangle> all = cancelled.triangles;
+  const auto count = static_cast<std::int32_t>(all.size());
+  all.insert(all.end(), surface.triangles.begin(), surface.triangles.end());
+  const std::vector<EdgeUse> uses = sorted_edge_uses(all);
+  // Neighbours among the cancelled, where nothing else has the edge; elsewhere one other triangle
+  // must be waiting there for a group to be needed.
+  UnionFind groups(all.size());
+  std::vector<bool> fits(all.size(), true), waited_for(all.size(), false);
+  for (const bool joining : {true, false}) {
+    for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::int32_t> back;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (uses[i].triangle < count) back.push_back(uses[i].triangle);
+      }
+      if (back.empty()) return;
+      const std::size_t others = end - begin - back.size();
+      if (joining && others == 0 && back.size() == 2) groups.join(back[0], back[1]);
+      if (joining || (others == 0 && back.size() == 2)) return;
+      if (others == 1 && back.size() == 1) {
+        waited_for[groups.root(back[0])] = true;
+        return;
+      }
+      for (const std::int32_t t : back) fits[groups.root(t)] = false;
+    });
+  }
+  std::size_t restored = 0;
+  for (std::int32_t t = 0; t < count; ++t) {
+    const std::int32_t group = groups.root(t);
+    if (!fits[group] || !waited_for[group]) continue;
+    surface.triangles.push_back(cancelled.triangles[t]);
+    surface.source.push_back(cancelled.source[t]);
+    ++restored;
+  }
+  return restored;
 }
 
 void drop_unused_points(IndexedSurface& surface) {

@@ -220,6 +220,19 @@ TEST(Options, SettingsTellEveryNameAndReadBack) {
   EXPECT_EQ(options_to_json(*back, kPlanar), json);
 }
 
+TEST(Options, RepairIsForSurfaces) {
+  const auto wrap = from_text("repair", "wrap");
+  ASSERT_TRUE(wrap);
+  EXPECT_EQ(wrap->repair, Repair::kWrap);
+  EXPECT_TRUE(options_for(ModelKind::kSurface, *wrap));
+  for (const ModelKind kind : {ModelKind::kPlc, kPlanar}) {
+    EXPECT_EQ(code_of(options_for(kind, *wrap)), ErrorCode::kBadOption);
+  }
+  EXPECT_EQ(code_of(from_text("repair", "some")), ErrorCode::kBadOption);
+  EXPECT_EQ(options_to_json(*wrap, ModelKind::kSurface)["repair"], "wrap");
+  EXPECT_TRUE(options_to_json({}, ModelKind::kPlc)["repair"].is_null());
+}
+
 TEST(Options, SettingsOfSolidsReadBack) {
   const auto options = options_from_json({{"axis_origin", {0, 0, 1}},
                                           {"axis_direction", {0, 0, 2}},

@@ -69,11 +69,11 @@ TEST(CleanSurface, NamesOpenEdges) {
   EXPECT_FALSE(clean->problem->elements.empty());
 }
 
-TEST(CleanSurface, RefusesInterpenetratingBodies) {
+TEST(CleanSurface, NamesInterpenetratingBodies) {
   ExecutionContext context;
   TriangleSurface surface = unit_box();
   append(surface, box_surface({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));
-  const auto clean = clean_surface(surface, context);
+  const auto clean = clean_surface(surface, context, kSurfaceSymmetryToleranceRel, Repair::kNone);
   ASSERT_TRUE(clean);
   ASSERT_TRUE(clean->problem);
   EXPECT_EQ(clean->problem->code, ErrorCode::kSelfIntersection);
