@@ -22,6 +22,7 @@ std::vector<Warning> warnings_of(const plane::SymmetricPslg& symmetric) {
 
 struct SymmetricSolid {
   std::unique_ptr<solid::SectorSource> source;
+  std::int32_t largest_fold = 1;
   std::vector<FoldEstimate> candidates;
 };
 
@@ -30,9 +31,9 @@ std::vector<Warning> warnings_of(const SymmetricSolid& solid) {
   const std::vector<std::string>& repairs = solid.source->repairs();
   if (!repairs.empty()) warnings.push_back(surface_repaired_warning(repairs));
   const std::int32_t fold = solid.source->symmetry().fold;
-  if (!solid.candidates.empty() && solid.candidates.front().fold > fold) {
-    warnings.push_back(fold_not_largest_warning(fold, solid.candidates.front().fold,
-                                                "its cell has fewer elements"));
+  if (solid.largest_fold > fold) {
+    warnings.push_back(
+        fold_not_largest_warning(fold, solid.largest_fold, "its cell has fewer elements"));
   }
   return warnings;
 }
@@ -65,8 +66,9 @@ Result<SymmetricSolid> at_its_fold(Result<std::unique_ptr<solid::SectorSource>> 
   if (!source) return error_of(source);
   auto chosen = solid::choose_fold(**source, options, context);
   if (!chosen) return error_of(chosen);
+  const std::int32_t largest = (*source)->symmetry().fold;
   auto& taken = chosen->source ? chosen->source : *source;
-  return SymmetricSolid{std::move(taken), std::move(chosen->candidates)};
+  return SymmetricSolid{std::move(taken), largest, std::move(chosen->candidates)};
 }
 
 // `symmetrise` makes the model symmetric, `mesh` meshes what that gives.

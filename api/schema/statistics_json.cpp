@@ -126,7 +126,7 @@ Json warnings_to_json(const std::vector<Warning>& warnings) {
   Json json = Json::array();
   for (const Warning& warning : warnings) {
     Json entry = {
-        {"code", warning_code_name(warning.code)}, {"text", warning.text}, {"mend", warning.mend}};
+        {"code", warning_code_name(warning.code)}, {"detail", warning.text}, {"mend", warning.mend}};
     if (warning.near_fold) {
       entry["fold"] = warning.near_fold->fold;
       entry["error_rel"] = number(warning.near_fold->error_rel);

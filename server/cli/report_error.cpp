@@ -50,7 +50,7 @@ void report_warnings(const std::string& warnings, bool as_json) {
     return;
   }
   for (const Json& warning : list) {
-    std::fprintf(stderr, "symcell: warning: %s\n  code %s; %s\n", warning.value("text", "").c_str(),
+    std::fprintf(stderr, "symcell: warning: %s\n  code %s; %s\n", warning.value("detail", "").c_str(),
                  warning.value("code", "").c_str(), warning.value("mend", "").c_str());
   }
 }
