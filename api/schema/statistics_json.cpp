@@ -115,7 +115,8 @@ Json inspected(const SolidInspection& inspection) {
 Json estimates_to_json(const std::vector<FoldEstimate>& candidates) {
   Json json = Json::array();
   for (const FoldEstimate& c : candidates) {
-    json.push_back({{"fold", c.fold}, {"elements", std::round(c.elements)}, {"meshed", c.meshed}});
+    json.push_back(
+        {{"fold", c.fold}, {"elements", std::llround(c.elements)}, {"meshed", c.meshed}});
   }
   return json;
 }
@@ -125,8 +126,9 @@ Json estimates_to_json(const std::vector<FoldEstimate>& candidates) {
 Json warnings_to_json(const std::vector<Warning>& warnings) {
   Json json = Json::array();
   for (const Warning& warning : warnings) {
-    Json entry = {
-        {"code", warning_code_name(warning.code)}, {"detail", warning.text}, {"mend", warning.mend}};
+    Json entry = {{"code", warning_code_name(warning.code)},
+                  {"detail", warning.text},
+                  {"mend", warning.mend}};
     if (warning.near_fold) {
       entry["fold"] = warning.near_fold->fold;
       entry["error_rel"] = number(warning.near_fold->error_rel);

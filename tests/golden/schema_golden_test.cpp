@@ -36,7 +36,8 @@ Statistics sample_statistics() {
                 .axis_origin = {0.5, 0.5, 0},
                 .axis_direction = {0, 0, 1},
                 .error_rel = 1e-9,
-                .detected = true};
+                .detected = true,
+                .candidates = {}};
   s.refinement = {.steiner_points = 5, .splits = 2, .flips = 30, .crossings = 4};
   s.exempt = {{"small_input_angle", 1}};
   s.warnings = {near_symmetry_warning({12, 1.06e-3, 1.1e-3}, 4, 1e-3),
@@ -56,8 +57,10 @@ TEST(Golden, StatisticsOfEachKind) {
   options.fold = 4;
   options.axis_origin = Point3{0.5, 0.5, 0};
   options.max_volume = 0.125;
+  Statistics solid = sample_statistics();
+  solid.symmetry.candidates = {{8, 120, true}, {4, 10, true}, {2, 19.6, false}};
   expect_golden("statistics_surface.json",
-                text_of(statistics_to_json(sample_statistics(), options, ModelKind::kSurface)));
+                text_of(statistics_to_json(solid, options, ModelKind::kSurface)));
 }
 
 TEST(Golden, InspectionOfEachKind) {

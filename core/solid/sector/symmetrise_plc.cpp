@@ -1,5 +1,4 @@
 // `symmetrise_plc`: a validated PLC, its symmetry, and the sectors cut from it.
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -15,12 +14,6 @@
 namespace symcell::solid {
 namespace {
 
-double tolerance_of(const PlcComplex& complex, const MeshOptions& options) {
-  return std::max(
-      options.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel) * complex.diameter,
-      resolution_of(complex.diameter, complex.magnitude));
-}
-
 Result<SymmetricPlc> find_and_average(const ValidPlc& valid,
                                       const MeshOptions& options,
                                       std::vector<PlcFit>* ladder,
@@ -28,8 +21,7 @@ Result<SymmetricPlc> find_and_average(const ValidPlc& valid,
   const PlcComplex& complex = valid.complex;
   auto fit = find_plc_symmetry(complex, valid.cells, options, ladder, context);
   if (!fit) return error_of(fit);
-  auto plc = make_symmetric_plc(complex, *fit, tolerance_of(complex, options),
-                                options.ignore_markers, context);
+  auto plc = make_symmetric_plc(complex, *fit, options.ignore_markers, context);
   if (!plc) return plc;
   plc->volume = valid.cells.volume;
   plc->symmetry.warnings = fit->warnings;
@@ -42,9 +34,7 @@ bool can_be_averaged(const ValidPlc& valid,
                      const PlcFit& fit,
                      const MeshOptions& options,
                      ExecutionContext& context) {
-  return make_symmetric_plc(valid.complex, fit, tolerance_of(valid.complex, options),
-                            options.ignore_markers, context)
-      .has_value();
+  return make_symmetric_plc(valid.complex, fit, options.ignore_markers, context).has_value();
 }
 
 class PlcSource final : public SectorSource {
