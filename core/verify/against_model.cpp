@@ -8,6 +8,7 @@
 
 #include "core/geometry/point_tree.hpp"
 #include "core/geometry/segment_index.hpp"
+#include "core/geometry/self_intersections.hpp"
 #include "core/solid/surface/shells.hpp"
 #include "core/solid/surface/t_junctions.hpp"
 #include "core/solid/surface/weld.hpp"
@@ -206,8 +207,12 @@ Result<ExaminedModel> examine(const TriangleSurface& given) {
   SYMCELL_TRY(check_triangles(given));
   ModelFacts facts;
   facts.diameter = diameter(given.vertices);
-  SurfaceModel model{&given, closed_surface(given, facts.diameter), false};
+  SurfaceModel model{&given, closed_surface(given, facts.diameter), false, false};
   Closure closure = closure_of(model.welded);
+  ExecutionContext unlimited;
+  const auto crossing = self_intersections(model.welded, 1, unlimited);
+  model.crosses = !crossing || !crossing->empty();
+  if (model.crosses) return ExaminedModel{std::move(facts), std::move(model)};
   if (closure.manifold) {
     // Each shell at even depth encloses one piece; those at odd depth are cavities.
     ExecutionContext context;

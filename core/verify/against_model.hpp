@@ -41,6 +41,9 @@ struct SurfaceModel {
   const TriangleSurface* given = nullptr;
   IndexedSurface welded;
   bool manifold = false;  // each edge has two triangles, which agree
+  // It intersects itself: what it bounds is known only once it is mended. Parts of it may then lie
+  // within the solid.
+  bool crosses = false;
 };
 
 struct ModelFacts {

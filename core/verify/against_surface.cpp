@@ -1,5 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/geometry/triangle_tree.hpp"
 #include "core/verify/against_model.hpp"
@@ -11,6 +15,8 @@ namespace {
 // tolerance in area, few enough to take seconds.
 constexpr double kSamples = 100'000;
 constexpr std::size_t kSamplesATriangle = 2000;
+// Solid angles that are computed to tell what lies within the mesh: a second's work.
+constexpr std::size_t kMostSolidAngles = 30'000'000;
 
 using Corners = std::array<Point3, 3>;
 
@@ -31,12 +37,30 @@ double area_of(const Corners& p) {
   return 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
 }
 
+// Of an oriented closed boundary round a point: 1 inside, 0 outside. Source: [van Oosterom-Strackee83].
+double winding_number(const std::vector<Point3>& points,
+                      const std::vector<Triangle>& faces,
+                      const Point3& p) {
+  double turns = 0;
+  for (const Triangle& t : faces) {
+    const Point3 a = points[static_cast<std::size_t>(t[0])] - p;
+    const Point3 b = points[static_cast<std::size_t>(t[1])] - p;
+    const Point3 c = points[static_cast<std::size_t>(t[2])] - p;
+    const double la = length(a), lb = length(b), lc = length(c);
+    turns += std::atan2(dot(a, cross(b, c)),
+                        la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+  }
+  return std::abs(turns) / (2 * std::numbers::pi);
+}
+
 // The largest distance seen and where; points beyond the tolerance are all that need to be exact.
 struct Farthest {
   double tolerance = 0;
   std::size_t beyond = 0;
   double distance = 0;
   std::string where;
+  // If not null, points beyond are kept instead of being counted.
+  std::vector<Point3>* kept = nullptr;
 
   void look(const TriangleTree& tree, const Point3& p, const char* what) {
     const auto near = tree.nearest(p, tolerance);
@@ -44,6 +68,13 @@ struct Farthest {
       distance = std::max(distance, std::sqrt(near.squared));
       return;
     }
+    if (kept != nullptr) {
+      kept->push_back(p);
+      return;
+    }
+    count(p, what);
+  }
+  void count(const Point3& p, const char* what) {
     if (beyond++ > 0) return;
     where = std::string(what) + " at (" + shown(p.x) + ", " + shown(p.y) + ", " + shown(p.z) + ")";
   }
@@ -69,12 +100,14 @@ class SurfaceChecker {
   std::vector<char> run() {
     std::vector<Triangle> faces;
     for (std::size_t g = 0; g < full_.group_count(); ++g) {
-      if (full_.sides(g) == 1) faces.push_back(full_.first(g).nodes);
+      if (full_.sides(g) != 1) continue;
+      faces.push_back(full_.first(g).nodes);
+      if (!full_.first(g).even) std::swap(faces.back()[1], faces.back()[2]);
     }
     const TriangleTree surface(model_.vertices, model_.triangles);
     const TriangleTree boundary(full_.mesh.points, faces);
 
-    Farthest from_mesh{tolerance_, 0, 0, {}};
+    Farthest from_mesh{tolerance_, 0, 0, {}, nullptr};
     std::vector<char> seen(full_.mesh.points.size(), 0);
     for (const Triangle& face : faces) {
       Point3 sum;
@@ -87,7 +120,8 @@ class SurfaceChecker {
     }
     checks_.add("model.on_surface", from_mesh.beyond == 0, from_mesh.text());
 
-    Farthest from_surface{tolerance_, 0, 0, {}};
+    std::vector<Point3> far;
+    Farthest from_surface{tolerance_, 0, 0, {}, surface_.crosses ? &far : nullptr};
     double area = 0;
     for (const Triangle& t : model_.triangles) area += area_of(corners(t));
     for (const Triangle& t : model_.triangles) {
@@ -97,6 +131,12 @@ class SurfaceChecker {
       each_sample(
           p, std::min(static_cast<std::size_t>(share) + 1, kSamplesATriangle),
           [&](const Point3& sample) { from_surface.look(boundary, sample, "the surface"); });
+    }
+    // Walls between bodies that overlap lie within the solid. A fair share of them is looked at.
+    const std::size_t step = 1 + far.size() * faces.size() / kMostSolidAngles;
+    for (std::size_t i = 0; i < far.size(); i += step) {
+      if (winding_number(full_.mesh.points, faces, far[i]) > 0.5) continue;
+      from_surface.count(far[i], "the surface");
     }
     checks_.add("model.covered", from_surface.beyond == 0, from_surface.text());
 
@@ -110,7 +150,10 @@ class SurfaceChecker {
   // another boundary.
   void check_topology(const std::vector<Triangle>& boundary) {
     if (!surface_.manifold) {
-      checks_.skip("model.topology", "the surface is not closed with two triangles at each edge");
+      checks_.skip("model.topology", surface_.crosses
+                                         ? "the surface intersects itself"
+                                         : "the surface is not closed with two triangles at each "
+                                           "edge");
       return;
     }
     const auto text = [](const SurfaceTopology& t) {
