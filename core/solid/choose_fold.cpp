@@ -21,14 +21,15 @@ std::vector<std::int32_t> divisors_descending(std::int32_t n) {
   return divisors;
 }
 
-// The mesh of one sector, as it comes.
+// The mesh of one sector, of one that can be had quickly.
 Result<SectorLoad> sample(const SectorSource& source,
                           const MeshOptions& options,
                           std::uint64_t most,
                           ExecutionContext& context,
                           const Tuning& tuning) {
   StartLimits limits = tuning.starts;
-  limits.compared = 1;
+  limits.compared = tuning.folds.compared_cuts;
+  limits.compare_budget = tuning.folds.compare_budget;
   Starts starts(source, limits);
   auto solid = starts.next(context);
   if (!solid) return error_of(solid);

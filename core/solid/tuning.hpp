@@ -83,7 +83,7 @@ struct RoundLimits {
   double least_distance = 1.0 / 256;
 };
 
-// The choice of a fold. Cells of one cut each are compared.
+// The choice of a fold. Cells of one mesh each are compared.
 struct FoldLimits {
   std::int32_t least = 8;  // sectors of smaller folds are wide enough
   int most_meshed = 10;    // folds that are tried
@@ -97,6 +97,10 @@ struct FoldLimits {
   double hope = 1.9;
   // Where a cell is too large to be compared, the sector may be the cause of it from this fold on.
   std::int32_t narrow = 24;
+  // Cuts that are compared for a mesh, and triangles worked on for their sake: at some folds the
+  // first cut is far from the best.
+  std::size_t compared_cuts = 4;
+  std::size_t compare_budget = 10'000;
   double worthwhile = 0.95;  // of the tetrahedra at the largest fold: a smaller one must have fewer
 };
 

@@ -50,8 +50,9 @@ void report_warnings(const std::string& warnings, bool as_json) {
     return;
   }
   for (const Json& warning : list) {
-    std::fprintf(stderr, "symcell: warning: %s\n  code %s; %s\n", warning.value("detail", "").c_str(),
-                 warning.value("code", "").c_str(), warning.value("mend", "").c_str());
+    std::fprintf(stderr, "symcell: warning: %s\n  code %s; %s\n",
+                 warning.value("detail", "").c_str(), warning.value("code", "").c_str(),
+                 warning.value("mend", "").c_str());
   }
 }
 
