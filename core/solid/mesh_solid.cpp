@@ -35,6 +35,12 @@ bool is_better(const RefinedSolid& a,
   return a.delaunay != b.delaunay ? a.delaunay : a.count() < b.count();
 }
 
+// More bad tetrahedra than another cut would mend.
+bool has_many_bad(const RefinedSolid& mesh, const StartLimits& limits) {
+  return static_cast<double>(mesh.guarded) >
+         std::max(limits.few_bad, limits.hopeless_share * static_cast<double>(mesh.count()));
+}
+
 bool should_try_another_start(const RefinedSolid& mesh,
                               int starts,
                               std::size_t effort,
@@ -43,8 +49,7 @@ bool should_try_another_start(const RefinedSolid& mesh,
   if (options.plain || starts >= (mesh.guarded > 0 ? limits.meshes_if_bad : limits.meshes))
     return false;
   const auto count = static_cast<double>(mesh.count());
-  if (static_cast<double>(mesh.guarded) > std::max(limits.few_bad, limits.hopeless_share * count))
-    return false;
+  if (has_many_bad(mesh, limits)) return false;
   const bool sized = count <= limits.sized_share * mesh.least_count;
   const bool poor = !options.delaunay &&
                     (sized ? mesh.least_sine < limits.sized_poor_sine : is_poor(mesh, limits));
@@ -93,18 +98,27 @@ Result<RefinedSolid> refine_from_starts(Starts& starts,
   const StartLimits& limits = tuning.starts;
   std::optional<RefinedSolid> best;
   Error last;
+  RoundLimits rounds = tuning.rounds;
   for (int start = 0; start < limits.meshes_if_bad; ++start) {
     if (start > 0 && !starts.has_next()) break;
-    if (best && !should_try_another_start(*best, start, starts.effort(), options, limits)) break;
+    // The growth that a mesh is allowed is meant against cascades, and may be what kept it bad.
+    const bool may_grow = best && !options.plain && has_many_bad(*best, limits) &&
+                          best->count() <= limits.small_cell &&
+                          rounds.most_growth == tuning.rounds.most_growth;
+    if (may_grow) {
+      rounds.most_growth *= limits.more_growth;
+    } else if (best && !should_try_another_start(*best, start, starts.effort(), options, limits)) {
+      break;
+    }
     Stopwatch watch;
     if (!best) context.report(Phase::kInitial, 0.08);
     auto solid = starts.next(context);
     timings.initial += watch.lap();
     const std::uint64_t most =
-        best ? limits.most_times_larger * best->count() : std::numeric_limits<std::uint64_t>::max();
-    auto refined =
-        solid ? refine_and_improve(std::move(*solid), options, most, context, tuning.rounds)
-              : error_of(solid);
+        best ? (may_grow ? limits.more_growth : limits.most_times_larger) * best->count()
+             : std::numeric_limits<std::uint64_t>::max();
+    auto refined = solid ? refine_and_improve(std::move(*solid), options, most, context, rounds)
+                         : error_of(solid);
     timings.refine += watch.lap();
     if (refined) {
       if (!best || is_better(*refined, *best, options, limits)) best = std::move(*refined);

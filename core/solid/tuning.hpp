@@ -42,6 +42,9 @@ struct StartLimits {
   // More bad tetrahedra than this share come of the input, whatever the cut; a few may not.
   double hopeless_share = 0.01;
   double few_bad = 20;
+  // One more mesh of those may grow by so many times more: a thin ring had 2,960 bad tetrahedra of
+  // 4,779, and has none of 8,441 then.
+  std::uint64_t more_growth = 8;
   // A mesh with a dihedral angle of a sine below this counts as larger by a factor.
   double poor_sine = 0.26;          // 15 degrees
   double poor_exempt_sine = 0.087;  // 5 degrees: the input may have few more

@@ -157,14 +157,13 @@ TEST(SectorLoad, IsExactAtItsOwnFoldAndGrowsBothWays) {
   EXPECT_GE(load.estimate(6000), load.count());
 }
 
-// All the way, from a surface.
-TEST(ChooseFold, StatisticsOfATubeListTheFolds) {
-  constexpr std::int32_t kSides = 120;
+// A ring of that many sides, as a tessellation.
+TriangleSurface ring_surface(std::int32_t sides, double outer, double inner, double height) {
   TriangleSurface tube;
-  for (const double r : {10.0, 8.0}) {
-    for (const double z : {0.0, 6.0}) {
-      for (std::int32_t i = 0; i < kSides; ++i) {
-        const double angle = 2 * std::numbers::pi * i / kSides;
+  for (const double r : {outer, inner}) {
+    for (const double z : {0.0, height}) {
+      for (std::int32_t i = 0; i < sides; ++i) {
+        const double angle = 2 * std::numbers::pi * i / sides;
         tube.vertices.push_back({r * std::cos(angle), r * std::sin(angle), z});
       }
     }
@@ -173,13 +172,34 @@ TEST(ChooseFold, StatisticsOfATubeListTheFolds) {
     tube.triangles.push_back({a, b, c});
     tube.triangles.push_back({a, c, d});
   };
-  for (std::int32_t i = 0; i < kSides; ++i) {
-    const std::int32_t j = (i + 1) % kSides, n = kSides;
+  for (std::int32_t i = 0; i < sides; ++i) {
+    const std::int32_t j = (i + 1) % sides, n = sides;
     quad(i, j, n + j, n + i);                          // outside
     quad(2 * n + j, 2 * n + i, 3 * n + i, 3 * n + j);  // bore
     quad(n + i, n + j, 3 * n + j, 3 * n + i);          // top
     quad(j, i, 2 * n + i, 2 * n + j);                  // bottom
   }
+  return tube;
+}
+
+// Long thin triangles of a thin ring: two thirds of such cells were over the ratio.
+TEST(MeshModel, AThinRingOfManySidesKeepsItsBounds) {
+  const TriangleSurface ring = ring_surface(120, 10, 9.7, 6);
+  for (const std::int32_t fold : {1, 4}) {
+    ExecutionContext context;
+    MeshOptions options;
+    options.fold = fold;
+    const auto outcome = mesh_model(ring, options, context);
+    ASSERT_TRUE(outcome) << outcome.error().message;
+    EXPECT_TRUE(outcome->statistics.exempt.empty()) << fold;
+    EXPECT_GT(outcome->statistics.cell.min_dihedral_deg, 15) << fold;
+  }
+}
+
+// All the way, from a surface.
+TEST(ChooseFold, StatisticsOfATubeListTheFolds) {
+  constexpr std::int32_t kSides = 120;
+  const TriangleSurface tube = ring_surface(kSides, 10, 8, 6);
   ExecutionContext context;
   MeshOptions options;
   const auto chosen = mesh_model(tube, options, context);
