@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/geometry/indexed_surface.hpp"
 #include "core/geometry/triangle_tree.hpp"
+#include "core/geometry/winding.hpp"
 #include "core/verify/against_model.hpp"
 
 namespace symcell::internal {
@@ -35,22 +36,6 @@ void each_sample(const Corners& p, std::size_t count, F f) {
 
 double area_of(const Corners& p) {
   return 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
-}
-
-// Of an oriented closed boundary round a point: 1 inside, 0 outside. Source: [van Oosterom-Strackee83].
-double winding_number(const std::vector<Point3>& points,
-                      const std::vector<Triangle>& faces,
-                      const Point3& p) {
-  double turns = 0;
-  for (const Triangle& t : faces) {
-    const Point3 a = points[static_cast<std::size_t>(t[0])] - p;
-    const Point3 b = points[static_cast<std::size_t>(t[1])] - p;
-    const Point3 c = points[static_cast<std::size_t>(t[2])] - p;
-    const double la = length(a), lb = length(b), lc = length(c);
-    turns += std::atan2(dot(a, cross(b, c)),
-                        la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
-  }
-  return std::abs(turns) / (2 * std::numbers::pi);
 }
 
 // The largest distance seen and where; points beyond the tolerance are all that need to be exact.
@@ -98,14 +83,16 @@ class SurfaceChecker {
         checks_(checks) {}
 
   std::vector<char> run() {
-    std::vector<Triangle> faces;
+    IndexedSurface outside;
+    outside.points = full_.mesh.points;
+    std::vector<Triangle>& faces = outside.triangles;
     for (std::size_t g = 0; g < full_.group_count(); ++g) {
       if (full_.sides(g) != 1) continue;
       faces.push_back(full_.first(g).nodes);
       if (!full_.first(g).even) std::swap(faces.back()[1], faces.back()[2]);
     }
     const TriangleTree surface(model_.vertices, model_.triangles);
-    const TriangleTree boundary(full_.mesh.points, faces);
+    const TriangleTree boundary(outside.points, faces);
 
     Farthest from_mesh{tolerance_, 0, 0, {}, nullptr};
     std::vector<char> seen(full_.mesh.points.size(), 0);
@@ -135,7 +122,7 @@ class SurfaceChecker {
     // Walls between bodies that overlap lie within the solid. A fair share of them is looked at.
     const std::size_t step = 1 + far.size() * faces.size() / kMostSolidAngles;
     for (std::size_t i = 0; i < far.size(); i += step) {
-      if (winding_number(full_.mesh.points, faces, far[i]) > 0.5) continue;
+      if (std::abs(winding_number(outside, far[i])) > 0.5) continue;
       from_surface.count(far[i], "the surface");
     }
     checks_.add("model.covered", from_surface.beyond == 0, from_surface.text());

@@ -8,8 +8,8 @@
 
 #include "core/base/union_find.hpp"
 #include "core/geometry/triangle_tree.hpp"
+#include "core/geometry/winding.hpp"
 #include "core/model/describe.hpp"
-#include "core/solid/surface/winding.hpp"
 
 namespace symcell::solid {
 namespace {

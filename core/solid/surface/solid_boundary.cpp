@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/winding.hpp"
 #include "core/model/describe.hpp"
 #include "core/solid/surface/arrangement.hpp"
 #include "core/solid/surface/weld.hpp"
-#include "core/solid/surface/winding.hpp"
 
 namespace symcell::solid {
 namespace {

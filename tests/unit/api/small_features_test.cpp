@@ -80,14 +80,20 @@ void expect_verified(const Model& model, const MeshOptions& options) {
   }
 }
 
+// `make(polygon)` of slots and notches of all widths.
+template <class Make>
+void expect_narrow_gaps_verified(const Make& make, const MeshOptions& options) {
+  for (const double width : {1e-6, 1e-8, 1e-9, 1e-10, 1e-11}) {
+    SCOPED_TRACE(width);
+    expect_verified(make(slotted(width)), options);
+    expect_verified(make(notched(width)), options);
+  }
+}
+
 TEST(SmallFeatures, InThePlane) {
   MeshOptions options;
   options.min_angle_deg = 20;
-  for (const double width : {1e-6, 1e-8, 1e-9, 1e-10, 1e-11}) {
-    SCOPED_TRACE(width);
-    expect_verified(planar_model(slotted(width)), options);
-    expect_verified(planar_model(notched(width)), options);
-  }
+  expect_narrow_gaps_verified(planar_model, options);
   for (const double far : {1e7, 1e8, 2.7e8}) {
     SCOPED_TRACE(far);
     expect_verified(planar_model(with_far_vertex(far)), options);
@@ -97,11 +103,7 @@ TEST(SmallFeatures, InThePlane) {
 TEST(SmallFeatures, InSpaceWithoutSymmetry) {
   MeshOptions options;
   options.fold = 1;
-  for (const double width : {1e-6, 1e-8, 1e-9, 1e-10, 1e-11}) {
-    SCOPED_TRACE(width);
-    expect_verified(prism_over(slotted(width)), options);
-    expect_verified(prism_over(notched(width)), options);
-  }
+  expect_narrow_gaps_verified(prism_over, options);
 }
 
 // The axis runs along the notch, between its two sides and nearer to them than the tolerance of the

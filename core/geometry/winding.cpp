@@ -1,9 +1,9 @@
-#include "core/solid/surface/winding.hpp"
+#include "core/geometry/winding.hpp"
 
 #include <cmath>
 #include <numbers>
 
-namespace symcell::solid {
+namespace symcell {
 
 double solid_angle(const IndexedSurface& surface, std::int32_t triangle, Point3 p) {
   const Triangle& v = surface.triangles[triangle];
@@ -15,6 +15,13 @@ double solid_angle(const IndexedSurface& surface, std::int32_t triangle, Point3 
   return 2 * std::atan2(dot(a, cross(b, c)), denominator);
 }
 
+double winding_number(const IndexedSurface& surface, Point3 p) {
+  double sum = 0;
+  const auto count = static_cast<std::int32_t>(surface.triangles.size());
+  for (std::int32_t t = 0; t < count; ++t) sum += solid_angle(surface, t, p);
+  return sum / (4 * std::numbers::pi);
+}
+
 double winding_number(const IndexedSurface& surface,
                       std::span<const std::int32_t> triangles,
                       Point3 p) {
@@ -23,4 +30,4 @@ double winding_number(const IndexedSurface& surface,
   return sum / (4 * std::numbers::pi);
 }
 
-}  // namespace symcell::solid
+}  // namespace symcell
