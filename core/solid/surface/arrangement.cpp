@@ -257,7 +257,7 @@ class Arranger {
     std::vector<Cdt::Vertex_handle> known;
     for (const auto& [id, v] : handles) known.push_back(v);
     std::sort(known.begin(), known.end());
-    const P3& a = corner(t, 0);
+    const P3 a = corner(t, 0);  // a copy: points are added meanwhile
     const auto n = CGAL::cross_product(corner(t, 1) - a, corner(t, 2) - a);
     for (auto v = cdt.finite_vertices_begin(); v != cdt.finite_vertices_end(); ++v) {
       const Cdt::Vertex_handle h = v;

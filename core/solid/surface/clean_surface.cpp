@@ -431,6 +431,14 @@ class Cleaner {
                "(repair=all takes both as bodies)";
       return std::optional<Resolved>();
     }
+    for (std::size_t t = 0; t < oriented.triangles.size(); ++t) {
+      const std::int32_t shell = shells->of_triangle[t];
+      if (bold() || !shells->in_overlap[shell] || shells->depth[shell] % 2 == 0) continue;
+      reason = "the closed part" + near_triangle(oriented, static_cast<std::int32_t>(t)) +
+               " lies where bodies overlap: whether it is a hollow of all of them or of one, which "
+               "the others fill, is not known (repair=all fills it)";
+      return std::optional<Resolved>();
+    }
     auto resolved = resolve_crossings(oriented, pairs, tolerance(), context_, reason);
     if (resolved && *resolved) {
       turned_shells_ = static_cast<std::size_t>(std::count(turned.begin(), turned.end(), true));

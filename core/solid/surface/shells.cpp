@@ -226,12 +226,14 @@ class Orienter {
       positive_.push_back(sixfold > 0);
     }
     shells_.depth.assign(count, 0);
+    shells_.in_overlap.assign(count, false);
     shells_.turned.assign(count, false);
     const auto meeting = meeting_shells();
     for (std::size_t s = 0; s < count; ++s) {
       if (s % kCheckEvery == 0) {
         SYMCELL_TRY(context_.check());
       }
+      std::vector<std::int32_t> enclosing;
       for (std::size_t o = 0; o < count; ++o) {
         if (o == s || !encloses(boxes[o], boxes[s])) continue;
         const std::pair<std::int32_t, std::int32_t> both =
@@ -240,12 +242,14 @@ class Orienter {
           if (positive_[s] == positive_[o]) continue;
           const auto inside = wholly_inside(s, o);
           if (!inside) return error_of(inside);
-          if (*inside) ++shells_.depth[s];
+          if (*inside) enclosing.push_back(static_cast<std::int32_t>(o));
           continue;
         }
         const double w = winding_number(surface_, members_[o], point(members_[s].front(), 0));
-        if (std::abs(w) > 0.5) ++shells_.depth[s];
+        if (std::abs(w) > 0.5) enclosing.push_back(static_cast<std::int32_t>(o));
       }
+      shells_.depth[s] = count_apart(enclosing, meeting);
+      shells_.in_overlap[s] = shells_.depth[s] < static_cast<std::int32_t>(enclosing.size());
     }
     for (std::size_t s = 0; s < count; ++s) {
       if (positive_[s] == (shells_.depth[s] % 2 == 0)) continue;
@@ -254,6 +258,29 @@ class Orienter {
       ++shells_.flipped_shells;
     }
     return {};
+  }
+
+  // Bodies that meet are one where it is asked how deep something lies: in the overlap of two it is
+  // no deeper than in one.
+  [[nodiscard]] std::int32_t count_apart(
+      const std::vector<std::int32_t>& shells,
+      const std::vector<std::pair<std::int32_t, std::int32_t>>& meeting) const {
+    UnionFind bodies(shells.size());
+    auto apart = static_cast<std::int32_t>(shells.size());
+    for (std::size_t i = 0; i < shells.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const std::pair<std::int32_t, std::int32_t> both = std::minmax(shells[i], shells[j]);
+        const bool meet = positive_[shells[i]] == positive_[shells[j]] &&
+                          std::binary_search(meeting.begin(), meeting.end(), both);
+        if (!meet || bodies.root(static_cast<std::int32_t>(i)) ==
+                         bodies.root(static_cast<std::int32_t>(j))) {
+          continue;
+        }
+        bodies.join(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+        --apart;
+      }
+    }
+    return apart;
   }
 
   [[nodiscard]] Point3 point(std::int32_t t, std::size_t i) const {

@@ -15,10 +15,12 @@ namespace symcell::solid {
 struct Shells {
   std::int32_t count = 0;
   std::vector<std::int32_t> of_triangle;
-  std::vector<std::int32_t> depth;  // per shell: how many other shells enclose it
-  std::vector<bool> turned;         // per shell: turned inside out as a whole
-  std::size_t flipped_alone = 0;    // triangles turned to agree with their neighbours
-  std::size_t flipped_shells = 0;   // shells turned inside out as a whole
+  // Per shell: how many others enclose it; of those that meet and look to one side all count once.
+  std::vector<std::int32_t> depth;
+  std::vector<bool> in_overlap;    // per shell: several that meet enclose it
+  std::vector<bool> turned;        // per shell: turned inside out as a whole
+  std::size_t flipped_alone = 0;   // triangles turned to agree with their neighbours
+  std::size_t flipped_shells = 0;  // shells turned inside out as a whole
 };
 
 // Components over edges with two triangles, joined at edges with more where none of them is closed on

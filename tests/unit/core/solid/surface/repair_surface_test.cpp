@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/random.hpp"
@@ -139,6 +140,51 @@ TEST(RepairSurface, UnitesBladesWithinARing) {
   const double half = std::numbers::pi / kFold, x = 0.125 / std::tan(half);
   const double overlap = x > 0.25 ? (x - 0.25) * (0.125 - 0.25 * std::tan(half)) : 0;
   EXPECT_NEAR(clean.volume, hub + 0.5 * kFold * (0.75 * 0.25 - overlap), 2e-3);
+}
+
+// Both discs are fans about the axis, and one lies within the other: many points are found in
+// triangles that are cut already.
+TEST(RepairSurface, UnitesCylindersThatStandOnEachOther) {
+  for (const auto& [sides, others] : {std::pair{12, 36}, std::pair{24, 24}, std::pair{30, 12}}) {
+    TriangleSurface surface = prism(sides, 1, 0, 1);
+    append(surface, prism(others, 2, 1, 2));
+    const auto area = [](int n, double r) {
+      return 0.5 * n * r * r * std::sin(2 * std::numbers::pi / n);
+    };
+    const CleanSurface clean = cleaned(surface, Repair::kSafe);
+    expect_valid(clean);
+    EXPECT_EQ(clean.shells, 1);
+    EXPECT_NEAR(clean.volume, area(sides, 1) + area(others, 2), 1e-9);
+  }
+}
+
+// A hollow of both bodies, or of one, which the other fills.
+TEST(RepairSurface, LeavesAHollowInTheOverlapOfTwoBodies) {
+  TriangleSurface bodies = box_surface({0, 0, 0}, {6, 6, 6});
+  append(bodies, box_surface({3, 1, 1}, {9, 5, 5}));
+  TriangleSurface part = box_surface({4, 2, 2}, {5, 3, 3});
+  for (const bool inwards : {true, false}) {
+    if (inwards) turn_inside_out(part);
+    TriangleSurface surface = bodies;
+    append(surface, part);
+    expect_refused(cleaned(surface, Repair::kSafe), ErrorCode::kSelfIntersection,
+                   "whether it is a hollow of all of them or of one");
+    const CleanSurface clean = cleaned(surface, Repair::kAll);
+    expect_valid(clean);
+    EXPECT_NEAR(clean.volume, 216 + 3 * 16, 1e-9);
+  }
+}
+
+// The overlap is no deeper than either body.
+TEST(RepairSurface, KeepsTheHollowOfOneOfTwoBodies) {
+  TriangleSurface surface = box_surface({0, 0, 0}, {6, 6, 6});
+  append(surface, box_surface({3, 1, 1}, {9, 5, 5}));
+  TriangleSurface hollow = box_surface({1, 2, 2}, {2, 3, 3});
+  turn_inside_out(hollow);
+  append(surface, hollow);
+  const CleanSurface clean = cleaned(surface, Repair::kSafe);
+  expect_valid(clean);
+  EXPECT_NEAR(clean.volume, 216 + 3 * 16 - 1, 1e-9);
 }
 
 TEST(RepairSurface, SplitsAnEdgeOfTwoBoxes) {
