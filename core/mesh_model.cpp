@@ -1,6 +1,7 @@
 #include "core/mesh_model.hpp"
 
 #include <memory>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -20,9 +21,14 @@ std::vector<Warning> warnings_of(const plane::SymmetricPslg& symmetric) {
   return symmetric.warnings;
 }
 
+// Divisors that are tried where no sector of the fold found can be meshed, fold 1 among them: each
+// takes as long as a job that fails.
+constexpr int kMostOtherFolds = 3;
+
 struct SymmetricSolid {
   std::unique_ptr<solid::SectorSource> source;
   std::int32_t largest_fold = 1;
+  std::string why_not_largest = "its cell has fewer elements";
   std::vector<FoldEstimate> candidates;
 };
 
@@ -32,8 +38,7 @@ std::vector<Warning> warnings_of(const SymmetricSolid& solid) {
   if (!repairs.empty()) warnings.push_back(surface_repaired_warning(repairs));
   const std::int32_t fold = solid.source->symmetry().fold;
   if (solid.largest_fold > fold) {
-    warnings.push_back(
-        fold_not_largest_warning(fold, solid.largest_fold, "its cell has fewer elements"));
+    warnings.push_back(fold_not_largest_warning(fold, solid.largest_fold, solid.why_not_largest));
   }
   return warnings;
 }
@@ -68,7 +73,50 @@ Result<SymmetricSolid> at_its_fold(Result<std::unique_ptr<solid::SectorSource>> 
   if (!chosen) return error_of(chosen);
   const std::int32_t largest = (*source)->symmetry().fold;
   auto& taken = chosen->source ? chosen->source : *source;
-  return SymmetricSolid{std::move(taken), largest, std::move(chosen->candidates)};
+  SymmetricSolid solid;
+  solid.source = std::move(taken);
+  solid.largest_fold = largest;
+  solid.candidates = std::move(chosen->candidates);
+  return solid;
+}
+
+// What may be the fault of the sectors, and not of the model or a limit.
+bool may_be_the_folds(ErrorCode code) {
+  return code == ErrorCode::kTetrahedralizationFailed || code == ErrorCode::kInternal;
+}
+
+std::int32_t largest_proper_divisor(std::int32_t n) {
+  for (std::int32_t p = 2; p <= n / p; ++p) {
+    if (n % p == 0) return n / p;
+  }
+  return 1;
+}
+
+// Where the fold may be chosen and no sector of it can be meshed (one whose copies meet in a single
+// point has no cut), one of its divisors is taken, and said.
+Result<MeshOutcome> mesh_at_some_fold(SymmetricSolid& solid,
+                                      const MeshOptions& options,
+                                      ExecutionContext& context) {
+  auto outcome = solid::mesh_solid(*solid.source, options, context);
+  const bool given = options.fold || options.largest_fold;
+  if (outcome || given || !may_be_the_folds(outcome.error().code)) return outcome;
+  const std::int32_t found = solid.source->symmetry().fold;
+  std::int32_t fold = found;
+  for (int tried = 1; fold > 1; ++tried) {
+    fold = tried < kMostOtherFolds ? largest_proper_divisor(fold) : 1;
+    SYMCELL_TRY(context.check());
+    auto other = solid.source->with_fold(fold, context);
+    if (!other) continue;
+    auto meshed = solid::mesh_solid(**other, options, context);
+    if (!meshed && !may_be_the_folds(meshed.error().code)) return meshed;
+    if (!meshed) continue;
+    solid.source = std::move(*other);
+    solid.why_not_largest =
+        "at fold " + std::to_string(found) + " there is no mesh: " + outcome.error().message;
+    SYMCELL_TRY(check_strict(options.strict, warnings_of(solid)));
+    return meshed;
+  }
+  return outcome;
 }
 
 // `symmetrise` makes the model symmetric, `mesh` meshes what that gives.
@@ -79,7 +127,7 @@ Result<MeshOutcome> run(const Symmetrise& symmetrise,
                         ExecutionContext& context) {
   Stopwatch total, watch;
   context.report(Phase::kSymmetry, 0.02);
-  const auto symmetric = symmetrise();
+  auto symmetric = symmetrise();
   if (!symmetric) return error_of(symmetric);
   SYMCELL_TRY(check_strict(strict, warnings_of(*symmetric)));
   const double symmetry_ms = watch.lap();
@@ -118,8 +166,8 @@ Result<MeshOutcome> mesh_model(const Model& model,
     };
     return run(symmetrise, mesh, options.strict, context);
   }
-  const auto mesh = [&](const SymmetricSolid& solid) {
-    return solid::mesh_solid(*solid.source, options, context);
+  const auto mesh = [&](SymmetricSolid& solid) {
+    return mesh_at_some_fold(solid, options, context);
   };
   if (const auto* plc = std::get_if<Plc>(&model)) {
     const auto symmetrise = [&] { return solid::symmetrise_plc(*plc, options, context); };

@@ -111,7 +111,7 @@ std::optional<Warning> exempt_elements_warning(const std::vector<ExemptCount>& e
                  std::to_string(count) + " of the cell's " + std::to_string(elements) +
                      " elements are exempt from the quality bound (" + reasons + ")",
                  "blunt the model's sharp corners, relax the bound, or take a smaller fold where "
-                 "the reason is fold_angle"};
+                 "the fold angle is the reason"};
 }
 
 Result<void> check_strict(bool strict, const std::vector<Warning>& warnings) {

@@ -21,17 +21,20 @@ std::vector<std::int32_t> divisors_descending(std::int32_t n) {
   return divisors;
 }
 
-// The mesh of one sector, of one that can be had quickly.
+// The mesh of one sector, of one that can be had quickly. `effort`: surface triangles worked on.
 Result<SectorLoad> sample(const SectorSource& source,
                           const MeshOptions& options,
                           std::uint64_t most,
                           ExecutionContext& context,
-                          const Tuning& tuning) {
+                          const Tuning& tuning,
+                          std::size_t& effort) {
   StartLimits limits = tuning.starts;
   limits.compared = tuning.folds.compared_cuts;
   limits.compare_budget = tuning.folds.compare_budget;
+  limits.sectors = tuning.folds.sectors;
   Starts starts(source, limits);
   auto solid = starts.next(context);
+  effort = starts.effort();
   if (!solid) return error_of(solid);
   auto refined = refine_and_improve(std::move(*solid), options, most, context, tuning.rounds);
   if (!refined) return error_of(refined);
@@ -114,7 +117,9 @@ class Choice {
       t.source = std::move(*made);
       source = t.source.get();
     }
-    auto load = sample(*source, options_, tuning_.folds.most_refined, context_, tuning_);
+    std::size_t effort = 0;
+    auto load = sample(*source, options_, tuning_.folds.most_refined, context_, tuning_, effort);
+    made_ += effort;
     if (!load) {
       made_ += tuning_.folds.most_refined;
       return give_up(t, load.error());
@@ -172,7 +177,7 @@ class Choice {
   std::vector<Tried> folds_;  // by descending fold
   int meshed_ = 0;
   std::int32_t last_ = 0;   // fold that was meshed last
-  std::uint64_t made_ = 0;  // tetrahedra
+  std::uint64_t made_ = 0;  // tetrahedra, and triangles worked on
 };
 
 }  // namespace

@@ -65,7 +65,7 @@ std::size_t count_bad(const Editor& editor, const Criteria& criteria) {
   std::size_t count = 0;
   for (TetId t = 0; t < mesh.tet_slots(); ++t) {
     if (!mesh.alive(t)) continue;
-    const bool exempt = criteria.exemption(mesh, mesh.tet(t)) != Exemption::kNone;
+    const Exemption exempt = criteria.exemption(mesh, mesh.tet(t));
     count += criteria.is_bad(editor.measures(t), mesh.tet(t).region, exempt) ? 1 : 0;
   }
   return count;
@@ -182,11 +182,10 @@ Result<void> count_exempt(const Editor& editor, const Criteria& criteria, Refine
                       std::to_string(x.y) + ", " + std::to_string(x.z) +
                       ") of the axis' frame stays too large; raise max_volume or max_edge");
     }
-    if (!criteria.is_bad(m, mesh.tet(t).region, false)) continue;
-    switch (exemption) {
-      case Exemption::kSmallInputAngle: ++sharp; break;
-      case Exemption::kAxis: ++axis; break;
-      case Exemption::kNone: ++result.guarded; break;
+    if (criteria.is_bad(m, mesh.tet(t).region, exemption)) {
+      ++result.guarded;
+    } else if (criteria.is_bad(m, mesh.tet(t).region, Exemption::kNone)) {
+      ++(exemption == Exemption::kAxis ? axis : sharp);
     }
   }
   if (sharp > 0) result.exempt.push_back({"small_input_angle", sharp});

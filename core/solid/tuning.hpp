@@ -90,8 +90,8 @@ struct RoundLimits {
 struct FoldLimits {
   std::int32_t least = 8;  // sectors of smaller folds are wide enough
   int most_meshed = 10;    // folds that are tried
-  // Tetrahedra of a mesh before it is improved, at which a fold is given up, and of all meshes
-  // after which no other fold is tried: a second's work.
+  // Tetrahedra of a mesh before it is improved, at which a fold is given up; of all meshes, and
+  // triangles worked on for their sake, after which no other fold is tried: a second's work or two.
   std::uint64_t most_refined = 10'000;
   std::uint64_t most_made = 30'000;
   // Folds are tried that promise fewer tetrahedra than so many times the smallest cell so far. Half
@@ -104,6 +104,7 @@ struct FoldLimits {
   // first cut is far from the best.
   std::size_t compared_cuts = 4;
   std::size_t compare_budget = 10'000;
+  std::int32_t sectors = 8;  // that are tried before a fold is given up
   double worthwhile = 0.95;  // of the tetrahedra at the largest fold: a smaller one must have fewer
 };
 

@@ -99,6 +99,30 @@ TriangleSurface box_surface(Point3 low, Point3 high) {
   return s;
 }
 
+TriangleSurface ring_surface(std::int32_t sides, double outer, double inner, double height) {
+  TriangleSurface tube;
+  for (const double r : {outer, inner}) {
+    for (const double z : {0.0, height}) {
+      for (std::int32_t i = 0; i < sides; ++i) {
+        const double angle = 2 * std::numbers::pi * i / sides;
+        tube.vertices.push_back({r * std::cos(angle), r * std::sin(angle), z});
+      }
+    }
+  }
+  const auto quad = [&](std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d) {
+    tube.triangles.push_back({a, b, c});
+    tube.triangles.push_back({a, c, d});
+  };
+  for (std::int32_t i = 0; i < sides; ++i) {
+    const std::int32_t j = (i + 1) % sides, n = sides;
+    quad(i, j, n + j, n + i);                          // outside
+    quad(2 * n + j, 2 * n + i, 3 * n + i, 3 * n + j);  // bore
+    quad(n + i, n + j, 3 * n + j, 3 * n + i);          // top
+    quad(j, i, 2 * n + i, 2 * n + j);                  // bottom
+  }
+  return tube;
+}
+
 void move_to_axis(TriangleSurface& surface, Point3 origin, Point3 direction) {
   const AxisFrame frame = AxisFrame::of_axis(origin, direction);
   for (Point3& p : surface.vertices) p = frame.to_model(p);

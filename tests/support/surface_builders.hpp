@@ -25,6 +25,12 @@ struct PrismShape {
 // An axis-parallel box, positive outside.
 [[nodiscard]] TriangleSurface box_surface(Point3 low, Point3 high);
 
+// A ring of that many sides about the z axis, from z = 0 on.
+[[nodiscard]] TriangleSurface ring_surface(std::int32_t sides,
+                                           double outer,
+                                           double inner,
+                                           double height);
+
 // About an axis through `origin` along `direction` instead of z.
 void move_to_axis(TriangleSurface& surface, Point3 origin, Point3 direction);
 

@@ -54,12 +54,12 @@ bool Surgery::may_shrink(double volume, double limit, std::size_t left) const {
 
 // Whether what is left of the star, drawn to a place for the vertex that stays, is good enough.
 bool Surgery::link_within(const Collapse& plan, Point3 place, const Worth& limits) {
-  const bool exempt = criteria_.exemption(mesh_, plan.stays.orbit) != Exemption::kNone;
+  const Exemption exempt = criteria_.exemption(mesh_, plan.stays.orbit);
   for (std::size_t n = 0; n < star_order_.size(); ++n) {
     const StarTet& s = star_tets_[star_order_[n]];
     if (s.has(plan.stays)) continue;
     const LinkTet t(place, s.link, limits.shape);
-    if (within(t, s.region, exempt || s.exempt_link, limits)) continue;
+    if (within(t, s.region, std::max(exempt, s.exempt_link), limits)) continue;
     blame(n);
     return false;
   }
@@ -155,7 +155,7 @@ bool Surgery::merge_in_the_middle(const Collapse& plan, double floor) {
     const TetMeasures& m = editor_.measures(c.t);
     volume += m.volume;
     limit = std::max(limit, criteria_.max_volume(n.region));
-    include(before, shapes_[c.t], m, n.region, exempt(n.c));
+    include(before, shapes_[c.t], m, n.region, exemption_of(n.c));
   }
   const std::size_t left = star_.size() - plan.shared + stretched_.size();
   if (!may_shrink(volume, limit, left)) return false;

@@ -30,11 +30,11 @@ Improver::Improver(Surgery& surgery, const Criteria& criteria, ExecutionContext&
 
 double Improver::key(TetId t) const {
   const Tet& tet = mesh_.tet(t);
-  const bool exempt = criteria_.exemption(mesh_, tet) != Exemption::kNone;
+  const Exemption exempt = criteria_.exemption(mesh_, tet);
   const TetMeasures& m = surgery_.editor().measures(t);
   const double excess = criteria_.excess(m, tet.region, exempt);
   if (excess > 1) return -kMustBeKept * excess;
-  const double ratio = exempt ? criteria_.ratio_excess(m) : 0;
+  const double ratio = exempt != Exemption::kNone ? criteria_.ratio_excess(m) : 0;
   return ratio > 1 ? -ratio : surgery_.shape(t);
 }
 

@@ -45,7 +45,7 @@ double InsertionCavity::worth(Point3 p, const CavityFace& f, double least) const
   const double shape = min_dihedral_sine(p, f.points[0], f.points[1], f.points[2]);
   if (shape <= least || shape <= 0) return shape;
   const TetMeasures m = measure_tet(p, f.points[0], f.points[1], f.points[2]);
-  const double excess = criteria_.excess(m, f.region, false);
+  const double excess = criteria_.excess(m, f.region, Exemption::kNone);
   return excess > 1 ? shape * kBrokenShare / excess : shape;
 }
 

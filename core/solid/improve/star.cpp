@@ -9,14 +9,14 @@ void Surgery::load_star_tet(TetCopy c, VertexId v, StarTet& s) const {
   s.region = mesh_.tet(c.t).region;
   s.own = 0;
   s.apex = 0;
-  s.exempt = s.exempt_link = false;
+  s.exempt = s.exempt_link = Exemption::kNone;
   for (std::uint32_t i = 0; i < 4; ++i) {
     s.c[i] = mesh_.corner(c, i);
     s.p[i] = mesh_.lift(s.c[i]);
-    const bool exempt = criteria_.exemption(mesh_, s.c[i].orbit) != Exemption::kNone;
-    s.exempt = s.exempt || exempt;
+    const Exemption exempt = criteria_.exemption(mesh_, s.c[i].orbit);
+    s.exempt = std::max(s.exempt, exempt);
     if (s.c[i].orbit != v) {
-      s.exempt_link = s.exempt_link || exempt;
+      s.exempt_link = std::max(s.exempt_link, exempt);
       continue;
     }
     s.own = static_cast<std::uint8_t>(s.own | 1U << i);

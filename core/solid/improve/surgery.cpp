@@ -27,7 +27,7 @@ Surgery::Surgery(Editor& editor, const Criteria& criteria)
   }
 }
 
-double Surgery::excess_of(const TetMeasures& m, std::int32_t region, bool exempt) const {
+double Surgery::excess_of(const TetMeasures& m, std::int32_t region, Exemption exempt) const {
   const double excess = criteria_.excess(m, region, exempt);
   if (!size_kept_ || excess <= 1) return excess;
   const double sized = criteria_.size_excess2(m, region);
@@ -35,27 +35,26 @@ double Surgery::excess_of(const TetMeasures& m, std::int32_t region, bool exempt
 }
 
 void Surgery::include(
-    Worth& w, double shape, const TetMeasures& m, std::int32_t region, bool exempt) const {
+    Worth& w, double shape, const TetMeasures& m, std::int32_t region, Exemption exempt) const {
   w.shape = std::min(w.shape, shape);
   w.excess = std::max(w.excess, excess_of(m, region, exempt));
-  if (exempt) w.exempt = std::max(w.exempt, criteria_.ratio_excess(m));
+  if (exempt != Exemption::kNone) w.exempt = std::max(w.exempt, criteria_.ratio_excess(m));
 }
 
 bool Surgery::within(const LinkTet& t,
                      std::int32_t region,
-                     bool exempt,
+                     Exemption exempt,
                      const Worth& limits) const {
   return t.sine > limits.shape && !is_flat(t.measures) &&
          excess_of(t.measures, region, exempt) <= limits.excess &&
-         (!exempt || criteria_.ratio_excess(t.measures) <= limits.exempt);
+         (exempt == Exemption::kNone || criteria_.ratio_excess(t.measures) <= limits.exempt);
 }
 
 Surgery::Worth Surgery::worth_of(std::span<const TetCopy> tets) const {
   Worth w;
   for (const TetCopy& c : tets) {
     const Tet& t = mesh_.tet(c.t);
-    const bool exempt = criteria_.exemption(mesh_, t) != Exemption::kNone;
-    include(w, shapes_[c.t], editor_.measures(c.t), t.region, exempt);
+    include(w, shapes_[c.t], editor_.measures(c.t), t.region, criteria_.exemption(mesh_, t));
   }
   return w;
 }
@@ -67,15 +66,15 @@ Surgery::Worth Surgery::worth_of(std::span<const NewTet> tets) const {
                  d = mesh_.lift(t.c[3]);
     const TetMeasures m = measure_tet(a, b, c, d);
     if (is_flat(m)) return {-1, kFar, kFar};
-    include(w, min_dihedral_sine(a, b, c, d), m, t.region, exempt(t.c));
+    include(w, min_dihedral_sine(a, b, c, d), m, t.region, exemption_of(t.c));
   }
   return w;
 }
 
-bool Surgery::exempt(std::span<const OrbitVertex> corners) const {
-  return std::any_of(corners.begin(), corners.end(), [&](const OrbitVertex& x) {
-    return criteria_.exemption(mesh_, x.orbit) != Exemption::kNone;
-  });
+Exemption Surgery::exemption_of(std::span<const OrbitVertex> corners) const {
+  Exemption found = Exemption::kNone;
+  for (const OrbitVertex& x : corners) found = std::max(found, criteria_.exemption(mesh_, x.orbit));
+  return found;
 }
 
 bool Surgery::all_within(std::span<const NewTet> tets,
@@ -85,7 +84,7 @@ bool Surgery::all_within(std::span<const NewTet> tets,
   for (const NewTet& t : tets) {
     const auto& f = kFaceCorners[0];
     const LinkFace link(place(t.c[f[0]]), place(t.c[f[1]]), place(t.c[f[2]]));
-    if (!within(LinkTet(place(t.c[0]), link, limits.shape), t.region, exempt(t.c), limits)) {
+    if (!within(LinkTet(place(t.c[0]), link, limits.shape), t.region, exemption_of(t.c), limits)) {
       return false;
     }
   }
@@ -340,7 +339,7 @@ bool Surgery::insert_point(TetId t) {
     const TetMeasures m = measure_tet(cavity.point, f.points[0], f.points[1], f.points[2]);
     if (is_flat(m)) return false;
     include(now, min_dihedral_sine(cavity.point, f.points[0], f.points[1], f.points[2]), m,
-            f.region, exempt(f.corners));
+            f.region, exemption_of(f.corners));
   }
   if (!accepts(now, before)) return false;
   if (editor_.insert(cavity, VertexKind::kFree, -1, false) == Editor::kNoVertex) {

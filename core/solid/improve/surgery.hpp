@@ -99,9 +99,9 @@ class Surgery {
     double excess = 0;  // the largest, of bounds that must be kept
     double exempt = 0;  // the largest of the ratio where the input exempts from it
   };
-  [[nodiscard]] double excess_of(const TetMeasures& m, std::int32_t region, bool exempt) const;
+  [[nodiscard]] double excess_of(const TetMeasures& m, std::int32_t region, Exemption exempt) const;
   void include(
-      Worth& w, double shape, const TetMeasures& m, std::int32_t region, bool exempt) const;
+      Worth& w, double shape, const TetMeasures& m, std::int32_t region, Exemption exempt) const;
   [[nodiscard]] Worth worth_of(std::span<const TetCopy> tets) const;
   // A corner and where it is to be.
   struct Moved {
@@ -116,9 +116,9 @@ class Surgery {
                                 const Worth& limits) const;
   [[nodiscard]] bool within(const LinkTet& t,
                             std::int32_t region,
-                            bool exempt,
+                            Exemption exempt,
                             const Worth& limits) const;
-  [[nodiscard]] bool exempt(std::span<const OrbitVertex> corners) const;
+  [[nodiscard]] Exemption exemption_of(std::span<const OrbitVertex> corners) const;
   [[nodiscard]] static bool better(const Worth& now, const Worth& before);
   [[nodiscard]] bool accepts(const Worth& now, const Worth& before) const {
     return lenient_ ? now.shape > kOpeningShape : better(now, before);
@@ -156,10 +156,10 @@ class Surgery {
     std::array<Point3, 4> p;
     LinkFace link;  // opposite the vertex
     std::int32_t region;
-    bool exempt;        // from the ratio
-    bool exempt_link;   // whatever vertex stands on the link
-    std::uint8_t own;   // bits of the corners that are copies of the vertex
-    std::uint8_t apex;  // one of them: copy 0
+    Exemption exempt;       // from the ratio
+    Exemption exempt_link;  // whatever vertex stands on the link
+    std::uint8_t own;       // bits of the corners that are copies of the vertex
+    std::uint8_t apex;      // one of them: copy 0
 
     [[nodiscard]] bool has(OrbitVertex x) const {
       return c[0] == x || c[1] == x || c[2] == x || c[3] == x;

@@ -32,7 +32,11 @@ double angle_at(Point3 a, Point3 b, Point3 c) {
 
 Criteria::Criteria(const InitialTetrahedralization& solid, const MeshOptions& options) {
   const double ratio = options.radius_edge * (1 - kBoundSafety);
-  inverse_ratio2_ = 1 / (ratio * ratio);
+  const double narrowing = 2 * std::sin(std::numbers::pi / solid.mesh.fold());
+  inverse_ratios2_[static_cast<std::size_t>(Exemption::kNone)] = 1 / (ratio * ratio);
+  inverse_ratios2_[static_cast<std::size_t>(Exemption::kAxis)] =
+      std::min(1.0, narrowing * narrowing) / (ratio * ratio);
+  inverse_ratios2_[static_cast<std::size_t>(Exemption::kSmallInputAngle)] = 0;
   max_edge2_ = options.max_edge * options.max_edge * (1 - kBoundSafety);
   narrow_ = solid.mesh.fold() > 1 && 360.0 / solid.mesh.fold() < kNarrowSectorDeg;
   for (const Subdomain& s : solid.subdomains) {

@@ -2,10 +2,16 @@
 //
 // Bounds: radius-edge ratio, volume (global and of the region), longest edge. Exempt from the ratio
 // are tetrahedra with a corner on a sharp feature of the input (dihedral angle at a segment, or
-// face angle at a vertex, below kSharpDeg) or, where 360/n is below 60 degrees, on the axis: there
-// a triangle (axis point, v, R v) has a ratio of 1 / (2 sin(180/n)) whatever the size.
+// face angle at a vertex, below kSharpDeg). Where 360/n is below 60 degrees those with a corner on
+// the axis are exempt as far as the sector forces it: from the bound B up to B / (2 sin(180/n)).
+// A point that is farther than B l from the corners of a tetrahedron with a shortest edge l, and
+// that encroaches upon no subsegment of the axis, is at least B l / sqrt 2 from the axis, and its
+// nearest copy 2 sin(180/n) times that from it: for B = sqrt 2 that is less than l as soon as n is
+// above 6, and no refinement need end.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -19,27 +25,29 @@ namespace symcell::solid {
 inline constexpr double kSharpDeg = 70;  // about the dihedral angle of a regular tetrahedron, 70.5
 inline constexpr double kNarrowSectorDeg = 60;  // from it on that ratio is 1 at most
 
-enum class Exemption : std::uint8_t { kNone, kSmallInputAngle, kAxis };
+// What exempts from more comes later.
+enum class Exemption : std::uint8_t { kNone, kAxis, kSmallInputAngle };
 
 class Criteria {
  public:
   Criteria(const InitialTetrahedralization& solid, const MeshOptions& options);
 
   // 1 or less: keeps all bounds. Above: the largest factor by which a length or the ratio is over.
-  // Exempt tetrahedra need not keep the ratio.
-  [[nodiscard]] double excess(const TetMeasures& m, std::int32_t region, bool exempt) const {
+  [[nodiscard]] double excess(const TetMeasures& m,
+                              std::int32_t region,
+                              Exemption exemption) const {
     const double sized = size_excess2(m, region);
-    const double ratio = exempt ? 0 : m.ratio2() * inverse_ratio2_;
+    const double ratio = m.ratio2() * inverse_ratios2_[static_cast<std::size_t>(exemption)];
     return ratio > sized ? ratio : sized;
   }
   // Of the ratio alone.
   [[nodiscard]] double ratio_excess(const TetMeasures& m) const {
-    return m.ratio2() * inverse_ratio2_;
+    return m.ratio2() * inverse_ratios2_[static_cast<std::size_t>(Exemption::kNone)];
   }
   // Squared, of volume and edge alone (volumes to the power 2/3).
   [[nodiscard]] double size_excess2(const TetMeasures& m, std::int32_t region) const;
-  [[nodiscard]] bool is_bad(const TetMeasures& m, std::int32_t region, bool exempt) const {
-    return excess(m, region, exempt) > 1;
+  [[nodiscard]] bool is_bad(const TetMeasures& m, std::int32_t region, Exemption exemption) const {
+    return excess(m, region, exemption) > 1;
   }
   [[nodiscard]] double max_volume(std::int32_t region) const {
     return max_volumes_[static_cast<std::size_t>(region)];
@@ -48,11 +56,7 @@ class Criteria {
 
   [[nodiscard]] Exemption exemption(const QuotientTetrahedralization& mesh, const Tet& t) const {
     Exemption found = Exemption::kNone;
-    for (const VertexId v : t.v) {
-      const Exemption e = exemption(mesh, v);
-      if (e == Exemption::kSmallInputAngle) return e;
-      if (e != Exemption::kNone) found = e;
-    }
+    for (const VertexId v : t.v) found = std::max(found, exemption(mesh, v));
     return found;
   }
   [[nodiscard]] Exemption exemption(const QuotientTetrahedralization& mesh, VertexId v) const {
@@ -82,7 +86,7 @@ class Criteria {
   void find_sharp_segments(const QuotientTetrahedralization& mesh);
   void find_sharp_vertices(const QuotientTetrahedralization& mesh, bool tessellated);
 
-  double inverse_ratio2_;
+  std::array<double, 3> inverse_ratios2_;  // by exemption
   double max_edge2_;
   bool narrow_;
   std::vector<double> max_volumes_;           // per region

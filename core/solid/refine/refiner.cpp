@@ -47,7 +47,7 @@ void Refiner::enqueue(TetId t) {
   const Tet& tet = mesh_.tet(t);
   const TetMeasures& m = editor_.measures(t);
   const double sized = criteria_.size_excess2(m, tet.region);
-  const double ratio = criteria_.excess(m, tet.region, false);
+  const double ratio = criteria_.excess(m, tet.region, Exemption::kNone);
   if (ratio <= 1) {
     bool illegal = false;
     for (std::uint32_t i = 0; illegal_too_ && i < 4; ++i)
@@ -56,8 +56,8 @@ void Refiner::enqueue(TetId t) {
     return;
   }
   const Exemption exemption = sized > 1 ? Exemption::kNone : criteria_.exemption(mesh_, tet);
-  const bool exempt = exemption != Exemption::kNone;
-  // Merging mends what is bad at the axis, points do not.
+  const bool exempt = !criteria_.is_bad(m, tet.region, exemption);
+  // As far as the sector forces it, merging mends what is bad at the axis, points do not.
   if (exempt && (!exempt_too_ || exemption == Exemption::kAxis)) return;
   // Shape before size, the worst first, but in steps: within one, tetrahedra follow each other as
   // they lie in memory.
@@ -123,7 +123,8 @@ Refiner::Cause Refiner::cause_of(TetId t) const {
   Cause cause;
   cause.shortest = std::sqrt(m.shortest2);
   cause.size = criteria_.size_excess2(m, tet.region) > 1;
-  cause.spare = !cause.size && criteria_.exemption(mesh_, tet) != Exemption::kNone;
+  const Exemption exemption = criteria_.exemption(mesh_, tet);
+  cause.spare = exemption != Exemption::kNone && !criteria_.is_bad(m, tet.region, exemption);
   cause.least = cause.size ? kSizeShare * std::cbrt(std::abs(m.volume)) : 0;
   // The ends of the shortest edge.
   double best = std::numeric_limits<double>::infinity();

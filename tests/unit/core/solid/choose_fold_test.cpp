@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh_model.hpp"
 #include "core/solid/initial/initial_tetrahedralization.hpp"
 #include "core/solid/mesh_solid.hpp"
 #include "tests/support/solid_sectors.hpp"
@@ -155,65 +154,6 @@ TEST(SectorLoad, IsExactAtItsOwnFoldAndGrowsBothWays) {
   EXPECT_DOUBLE_EQ(load.estimate(60), load.count());
   EXPECT_GE(load.estimate(1), load.count());
   EXPECT_GE(load.estimate(6000), load.count());
-}
-
-// A ring of that many sides, as a tessellation.
-TriangleSurface ring_surface(std::int32_t sides, double outer, double inner, double height) {
-  TriangleSurface tube;
-  for (const double r : {outer, inner}) {
-    for (const double z : {0.0, height}) {
-      for (std::int32_t i = 0; i < sides; ++i) {
-        const double angle = 2 * std::numbers::pi * i / sides;
-        tube.vertices.push_back({r * std::cos(angle), r * std::sin(angle), z});
-      }
-    }
-  }
-  const auto quad = [&](std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d) {
-    tube.triangles.push_back({a, b, c});
-    tube.triangles.push_back({a, c, d});
-  };
-  for (std::int32_t i = 0; i < sides; ++i) {
-    const std::int32_t j = (i + 1) % sides, n = sides;
-    quad(i, j, n + j, n + i);                          // outside
-    quad(2 * n + j, 2 * n + i, 3 * n + i, 3 * n + j);  // bore
-    quad(n + i, n + j, 3 * n + j, 3 * n + i);          // top
-    quad(j, i, 2 * n + i, 2 * n + j);                  // bottom
-  }
-  return tube;
-}
-
-// Long thin triangles of a thin ring: two thirds of such cells were over the ratio.
-TEST(MeshModel, AThinRingOfManySidesKeepsItsBounds) {
-  const TriangleSurface ring = ring_surface(120, 10, 9.7, 6);
-  for (const std::int32_t fold : {1, 4}) {
-    ExecutionContext context;
-    MeshOptions options;
-    options.fold = fold;
-    const auto outcome = mesh_model(ring, options, context);
-    ASSERT_TRUE(outcome) << outcome.error().message;
-    EXPECT_TRUE(outcome->statistics.exempt.empty()) << fold;
-    EXPECT_GT(outcome->statistics.cell.min_dihedral_deg, 15) << fold;
-  }
-}
-
-// All the way, from a surface.
-TEST(ChooseFold, StatisticsOfATubeListTheFolds) {
-  constexpr std::int32_t kSides = 120;
-  const TriangleSurface tube = ring_surface(kSides, 10, 8, 6);
-  ExecutionContext context;
-  MeshOptions options;
-  const auto chosen = mesh_model(tube, options, context);
-  ASSERT_TRUE(chosen) << chosen.error().message;
-  options.largest_fold = true;
-  const auto largest = mesh_model(tube, options, context);
-  ASSERT_TRUE(largest) << largest.error().message;
-  EXPECT_EQ(largest->statistics.symmetry.fold, kSides);
-  EXPECT_TRUE(largest->statistics.symmetry.candidates.empty());
-  EXPECT_LT(chosen->statistics.symmetry.fold, kSides);
-  EXPECT_TRUE(chosen->statistics.symmetry.detected);
-  EXPECT_LT(chosen->statistics.cell.elements, largest->statistics.cell.elements);
-  ASSERT_FALSE(chosen->statistics.symmetry.candidates.empty());
-  EXPECT_EQ(chosen->statistics.symmetry.candidates.front().fold, kSides);
 }
 
 }  // namespace

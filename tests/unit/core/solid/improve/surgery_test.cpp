@@ -58,12 +58,12 @@ class SolidSurgeryFold : public testing::TestWithParam<std::int32_t> {
     std::vector<State> all(mesh().tet_slots());
     for (TetId t = 0; t < mesh().tet_slots(); ++t) {
       if (!mesh().alive(t)) continue;
-      const bool exempt = criteria.exemption(mesh(), mesh().tet(t)) != Exemption::kNone;
+      const Exemption exempt = criteria.exemption(mesh(), mesh().tet(t));
       all[t] = {
           mesh().tet(t).version,
           true,
           {surgery.shape(t), criteria.excess(editor.measures(t), mesh().tet(t).region, exempt),
-           exempt ? criteria.ratio_excess(editor.measures(t)) : 0}};
+           exempt != Exemption::kNone ? criteria.ratio_excess(editor.measures(t)) : 0}};
     }
     return all;
   }

@@ -134,6 +134,13 @@ TEST(SolidCriteria, TheAxisExcusesAboveSixfold) {
       for (const VertexId v : solid.mesh.tet(t).v) at_axis = at_axis || solid.mesh.on_axis(v);
       const auto e = criteria.exemption(solid.mesh, solid.mesh.tet(t));
       EXPECT_EQ(e, at_axis && fold > 6 ? Exemption::kAxis : Exemption::kNone);
+      // As far as the sector forces it, and no farther.
+      const TetMeasures m =
+          measure_tet(solid.mesh.corner_point(t, 0), solid.mesh.corner_point(t, 1),
+                      solid.mesh.corner_point(t, 2), solid.mesh.corner_point(t, 3));
+      const double narrowing = e == Exemption::kAxis ? 2 * std::sin(std::numbers::pi / fold) : 1;
+      EXPECT_NEAR(criteria.excess(m, 0, e), narrowing * narrowing * criteria.ratio_excess(m),
+                  1e-12 * criteria.ratio_excess(m));
       exempt += e == Exemption::kAxis ? 1 : 0;
     }
     EXPECT_EQ(exempt > 0, fold > 6);
@@ -158,14 +165,14 @@ TEST(SolidCriteria, BoundsOfRegionsAndEdges) {
   m.volume = 0.02;
   EXPECT_NEAR(criteria.size_excess2(m, 0), std::pow(2, 2.0 / 3), 1e-6);
   EXPECT_NEAR(criteria.size_excess2(m, 1), 0.8, 1e-6);
-  EXPECT_TRUE(criteria.is_bad(m, 0, true));
-  EXPECT_FALSE(criteria.is_bad(m, 1, false));
+  EXPECT_TRUE(criteria.is_bad(m, 0, Exemption::kSmallInputAngle));
+  EXPECT_FALSE(criteria.is_bad(m, 1, Exemption::kNone));
   m.longest2 = 0.26;
-  EXPECT_TRUE(criteria.is_bad(m, 1, true));
+  EXPECT_TRUE(criteria.is_bad(m, 1, Exemption::kSmallInputAngle));
   m.longest2 = 0.2;
   m.radius2 = 0.41;  // ratio 1.43
-  EXPECT_TRUE(criteria.is_bad(m, 1, false));
-  EXPECT_FALSE(criteria.is_bad(m, 1, true));
+  EXPECT_TRUE(criteria.is_bad(m, 1, Exemption::kNone));
+  EXPECT_FALSE(criteria.is_bad(m, 1, Exemption::kSmallInputAngle));
 }
 
 }  // namespace

@@ -54,7 +54,9 @@ TEST_P(SolidRefinerPrisms, KeepsTheBounds) {
   EXPECT_LE(run.bad, run.counters.refused);
   const double share_of_bad =
       static_cast<double>(run.bad) / static_cast<double>(run.solid.mesh.tet_count());
-  EXPECT_LE(share_of_bad, fold <= 3 ? 0 : (fold <= 12 ? 0.1 : 0.25));
+  // At an axis it leaves the most to improvement.
+  const double narrow_share = bore > 0 ? 0.1 : 0.15;
+  EXPECT_LE(share_of_bad, fold <= 3 ? 0 : (fold <= 12 ? narrow_share : 0.25));
   if (share > 0) {
     EXPECT_GE(static_cast<double>(run.solid.mesh.tet_count()), 1 / share);
   }
