@@ -1,0 +1,173 @@
+#include "core/solid/cell_search.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/base/stopwatch.hpp"
+#include "core/geometry/rotation.hpp"
+#include "core/guard/check_cell.hpp"
+#include "core/solid/cut/cut_cell.hpp"
+
+namespace symcell::solid {
+namespace {
+
+bool is_poor(const RefinedSolid& mesh, const StartLimits& limits) {
+  return mesh.least_sine < limits.poor_sine || mesh.least_exempt_sine < limits.poor_exempt_sine;
+}
+
+double cost(const RefinedSolid& mesh, const StartLimits& limits) {
+  return static_cast<double>(mesh.count()) * (is_poor(mesh, limits) ? limits.poor_factor : 1);
+}
+
+bool is_better(const RefinedSolid& a,
+               const RefinedSolid& b,
+               const MeshOptions& options,
+               const StartLimits& limits) {
+  if (a.guarded != b.guarded) return a.guarded < b.guarded;
+  if (!options.delaunay) return cost(a, limits) < cost(b, limits);
+  return a.delaunay != b.delaunay ? a.delaunay : a.count() < b.count();
+}
+
+// More bad tetrahedra than another cut would mend.
+bool has_many_bad(const RefinedSolid& mesh, const StartLimits& limits) {
+  return static_cast<double>(mesh.guarded) >
+         std::max(limits.few_bad, limits.hopeless_share * static_cast<double>(mesh.count()));
+}
+
+bool should_try_another_start(const RefinedSolid& mesh,
+                              int starts,
+                              std::size_t effort,
+                              const MeshOptions& options,
+                              const StartLimits& limits) {
+  if (options.plain || starts >= (mesh.guarded > 0 ? limits.meshes_if_bad : limits.meshes))
+    return false;
+  const auto count = static_cast<double>(mesh.count());
+  if (has_many_bad(mesh, limits)) return false;
+  const bool sized = count <= limits.sized_share * mesh.least_count;
+  const bool poor = !options.delaunay &&
+                    (sized ? mesh.least_sine < limits.sized_poor_sine : is_poor(mesh, limits));
+  if (mesh.guarded > 0 || poor) {
+    // Cuts of a surface have other triangles each, cuts of facets as given do not.
+    return mesh.count() <= (effort > 0 ? limits.mendable_cell : limits.small_cell) &&
+           effort <= limits.mend_budget;
+  }
+  return !sized && mesh.count() <= limits.small_cell && effort <= limits.start_budget;
+}
+
+// Nodes and middles of the boundary's facets, in the local frame.
+std::vector<Point3> boundary_points(const SymmetryCellMesh& cell) {
+  const RotationTable rotations(cell.fold);
+  std::vector<Point3> points;
+  std::vector<char> seen(cell.orbit_points.size(), 0);
+  for (std::size_t i = 0; i + 2 < cell.boundary.size(); i += 3) {
+    Point3 sum;
+    for (std::size_t j = i; j < i + 3; ++j) {
+      const OrbitVertex v = cell.nodes[static_cast<std::size_t>(cell.boundary[j])];
+      const Point3& p = cell.orbit_points[static_cast<std::size_t>(v.orbit)];
+      sum = sum + rotations.rotate(p, v.exponent);
+      char& known = seen[static_cast<std::size_t>(v.orbit)];
+      if (known == 0) points.push_back(p);
+      known = 1;
+    }
+    points.push_back((1.0 / 3) * sum);
+  }
+  return points;
+}
+
+// Of a finished cell: in itself, and against what it was made from.
+Result<void> check_finished(const SymmetryCellMesh& cell,
+                            const RefinedSolid& refined,
+                            const SectorSource& source,
+                            ExecutionContext& context) {
+  SYMCELL_TRY(check_cell(cell, &refined.solid.cover.boundary));
+  return source.check_boundary(boundary_points(cell), context);
+}
+
+}  // namespace
+
+Result<CellSearch::Found> CellSearch::run() {
+  for (int cells = 1;;) {
+    if (wants_another_start()) {
+      SYMCELL_TRY(mesh_another_start());
+      continue;
+    }
+    if (!best_) return fail(last_);
+    auto cell = cell_of_best();
+    if (cell) return Found{std::move(*best_), std::move(*cell)};
+    // Rarely, in narrow sectors, a mesh has no cell without flaws: another one has.
+    const bool may_go_on =
+        cell.error().code == ErrorCode::kInternal && cells < tuning_.starts.cells;
+    if (!may_go_on || !starts_.has_next()) return error_of(cell);
+    forget_best();
+    ++cells;
+  }
+}
+
+void CellSearch::forget_best() {
+  best_.reset();
+  meshed_ = 0;
+  rounds_ = tuning_.rounds;
+}
+
+// The growth that a mesh is allowed is meant against cascades, and may be what kept it bad.
+bool CellSearch::may_grow() const {
+  return !options_.plain && has_many_bad(*best_, tuning_.starts) &&
+         best_->count() <= tuning_.starts.small_cell &&
+         rounds_.most_growth == tuning_.rounds.most_growth;
+}
+
+bool CellSearch::wants_another_start() {
+  growing_ = false;
+  if (meshed_ == 0) return true;
+  const StartLimits& limits = tuning_.starts;
+  if (out_of_time_ || meshed_ >= limits.meshes_if_bad || !starts_.has_next()) return false;
+  if (!best_) return true;
+  growing_ = may_grow();
+  return growing_ || should_try_another_start(*best_, meshed_, starts_.effort(), options_, limits);
+}
+
+// An error: no other start is to be tried.
+Result<void> CellSearch::mesh_another_start() {
+  const StartLimits& limits = tuning_.starts;
+  ++meshed_;
+  if (growing_) rounds_.most_growth *= limits.more_growth;
+  Stopwatch watch;
+  if (!best_) context_.report(Phase::kInitial, 0.08);
+  auto solid = starts_.next(context_);
+  timings_.initial += watch.lap();
+  const std::uint64_t most =
+      best_ ? (growing_ ? limits.more_growth : limits.most_times_larger) * best_->count()
+            : std::numeric_limits<std::uint64_t>::max();
+  auto refined = solid ? refine_and_improve(std::move(*solid), options_, most, context_, rounds_)
+                       : error_of(solid);
+  timings_.refine += watch.lap();
+  if (refined) {
+    if (!best_ || is_better(*refined, *best_, options_, limits)) best_ = std::move(*refined);
+    return {};
+  }
+  last_ = refined.error();
+  // A mesh that turns out invalid is the fault of one cut.
+  const bool may_go_on = best_ || last_.code == ErrorCode::kInternal;
+  if (!may_go_on || last_.code == ErrorCode::kCancelled) return error_of(refined);
+  out_of_time_ = !context_.check();
+  return {};
+}
+
+Result<SymmetryCellMesh> CellSearch::cell_of_best() {
+  Stopwatch watch;
+  const QuotientTetrahedralization& mesh = best_->solid.mesh;
+  context_.report(Phase::kCell, 0.92, mesh.tet_count(), 1);
+  const auto cut = cut_cell(mesh, context_);
+  timings_.cell += watch.lap();
+  if (!cut) return error_of(cut);
+  auto cell = build_cell_mesh(best_->solid, *cut, source_.symmetry());
+  timings_.cell += watch.lap();
+  const auto sound = check_finished(cell, *best_, source_, context_);
+  timings_.check += watch.lap() + best_->check_ms;
+  if (!sound) return error_of(sound);
+  return cell;
+}
+
+}  // namespace symcell::solid
