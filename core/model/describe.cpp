@@ -13,6 +13,13 @@ std::string to_text(double value, Format... format) {
   return {buffer.data(), end.ptr};
 }
 
+// A coordinate: as it was given where that is short, else to as many digits as find the place.
+// STL files have 9 significant digits at most; more are of computed points.
+std::string coordinate(double value) {
+  const std::string given = to_text(value), rounded = to_text(value, std::chars_format::general, 9);
+  return given.size() <= rounded.size() ? given : rounded;
+}
+
 std::string two_vertices(std::int64_t first, std::int64_t second) {
   return "vertices " + std::to_string(first) + " and " + std::to_string(second);
 }
@@ -32,12 +39,11 @@ std::string describe_rounded(double value) {
 }
 
 std::string describe_point(Point2 p) {
-  return "(" + describe_number(p.x) + ", " + describe_number(p.y) + ")";
+  return "(" + coordinate(p.x) + ", " + coordinate(p.y) + ")";
 }
 
 std::string describe_point(Point3 p) {
-  return "(" + describe_number(p.x) + ", " + describe_number(p.y) + ", " + describe_number(p.z) +
-         ")";
+  return "(" + coordinate(p.x) + ", " + coordinate(p.y) + ", " + coordinate(p.z) + ")";
 }
 
 std::string describe_vertex(std::span<const Point2> vertices, std::int64_t vertex) {

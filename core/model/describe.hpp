@@ -14,7 +14,7 @@ namespace symcell {
 [[nodiscard]] std::string describe_number(double value);
 // Six significant digits: for measured quantities.
 [[nodiscard]] std::string describe_rounded(double value);
-// "(1.5, 2)"
+// "(1.5, 2)", to at most nine significant digits.
 [[nodiscard]] std::string describe_point(Point2 p);
 [[nodiscard]] std::string describe_point(Point3 p);
 // "vertex 3 at (1.5, 2)"
