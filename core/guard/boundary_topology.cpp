@@ -100,6 +100,7 @@ std::vector<OrbitEdgeUse> sorted_edge_uses(std::int32_t fold,
                                            std::span<const OrbitTriangle> triangles) {
   std::vector<OrbitEdgeUse> uses;
   uses.reserve(3 * triangles.size());
+  std::vector<std::size_t> first(on_axis.size() + 1, 0);  // of those with an orbit as lower end
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t side = 0; side < 3; ++side) {
       OrbitEdgeUse use;
@@ -110,12 +111,22 @@ std::vector<OrbitEdgeUse> sorted_edge_uses(std::int32_t fold,
       use.side = static_cast<std::int32_t>(side);
       use.forward = !swapped;
       uses.push_back(use);
+      ++first[at(use.edge.low) + 1];
     }
   }
-  std::sort(uses.begin(), uses.end(), [](const OrbitEdgeUse& x, const OrbitEdgeUse& y) {
-    return std::tie(x.edge, x.triangle, x.side) < std::tie(y.edge, y.triangle, y.side);
-  });
-  return uses;
+  // By the lower end in one go; few share it.
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<OrbitEdgeUse> sorted(uses.size());
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  for (const OrbitEdgeUse& use : uses) sorted[next[at(use.edge.low)]++] = use;
+  for (std::size_t orbit = 0; orbit + 1 < first.size(); ++orbit) {
+    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(first[orbit]),
+              sorted.begin() + static_cast<std::ptrdiff_t>(first[orbit + 1]),
+              [](const OrbitEdgeUse& x, const OrbitEdgeUse& y) {
+                return std::tie(x.edge, x.triangle, x.side) < std::tie(y.edge, y.triangle, y.side);
+              });
+  }
+  return sorted;
 }
 
 BoundaryTopology boundary_topology(std::int32_t fold,
