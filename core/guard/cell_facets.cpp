@@ -198,37 +198,46 @@ Failure broken(const std::string& what) {
   return fail(ErrorCode::kInternal, "mesh check 'cell': " + what);
 }
 
+namespace {
+
+Nodes nodes_of_facet(const SymmetryCellMesh& cell, std::size_t e, std::size_t i) {
+  if (cell.dimension == 2) {
+    const std::int32_t* v = &cell.elements[3 * e];
+    return {v[kSides[i][0]], v[kSides[i][1]], -1};
+  }
+  const std::int32_t* v = &cell.elements[4 * e];
+  return {v[kFaces[i][0]], v[kFaces[i][1]], v[kFaces[i][2]]};
+}
+
+}  // namespace
+
 ElementFacet element_facet(const SymmetryCellMesh& cell, std::size_t e, std::size_t i) {
   ElementFacet facet;
   facet.element = static_cast<std::int32_t>(e);
-  if (cell.dimension == 2) {
-    const std::int32_t* v = &cell.elements[3 * e];
-    facet.nodes = {v[kSides[i][0]], v[kSides[i][1]], -1};
-  } else {
-    const std::int32_t* v = &cell.elements[4 * e];
-    facet.nodes = {v[kFaces[i][0]], v[kFaces[i][1]], v[kFaces[i][2]]};
-  }
+  facet.nodes = nodes_of_facet(cell, e, i);
   facet.even = sort_nodes(facet.nodes, cell.dimension);
   facet.number = number_of(facet.nodes);
   return facet;
 }
 
 FacetTable::FacetTable(const SymmetryCellMesh& cell, std::size_t most)
-    : cell_(cell), left_(most), places_(table_size(most)) {
+    : cell_(cell),
+      corners_(static_cast<std::uint32_t>(cell.dimension) + 1),
+      left_(most),
+      places_(table_size(most)) {
 }
 
-ElementFacet FacetTable::facet_at(const Place& place) const {
-  const auto corners = static_cast<std::uint32_t>(cell_.dimension) + 1;
-  return element_facet(cell_, place.facet / corners, place.facet % corners);
+bool FacetTable::holds(const Place& place, std::uint64_t number, const Nodes& nodes) const {
+  if (place.number != number) return false;
+  Nodes own = nodes_of_facet(cell_, place.facet / corners_, place.facet % corners_);
+  sort_nodes(own, cell_.dimension);
+  return own == nodes;
 }
 
 std::size_t FacetTable::place_of(std::uint64_t number, const Nodes& nodes) const {
   const std::size_t last = places_.size() - 1;
   std::size_t i = number & last;
-  while (places_[i].count != 0 &&
-         (places_[i].number != number || facet_at(places_[i]).nodes != nodes)) {
-    i = (i + 1) & last;
-  }
+  while (places_[i].count != 0 && !holds(places_[i], number, nodes)) i = (i + 1) & last;
   return i;
 }
 
@@ -237,18 +246,16 @@ Result<std::int32_t> FacetTable::add(const ElementFacet& facet, std::size_t i) {
   if (place.count == 0) {
     if (left_ == 0) return broken("more facets have one element than are on its surface");
     --left_;
-    const auto corners = static_cast<std::uint32_t>(cell_.dimension) + 1;
     place = {facet.number,
-             static_cast<std::uint32_t>(facet.element) * corners + static_cast<std::uint32_t>(i),
-             1};
+             static_cast<std::uint32_t>(facet.element) * corners_ + static_cast<std::uint32_t>(i),
+             1, facet.even};
     return -1;
   }
-  const ElementFacet other = facet_at(place);
-  if (++place.count > 2 || other.even == facet.even) {
+  if (++place.count > 2 || place.even == facet.even) {
     return broken("the facet " + name_of(facet.nodes) + " has " + std::to_string(place.count) +
                   " elements");
   }
-  return other.element;
+  return static_cast<std::int32_t>(place.facet / corners_);
 }
 
 bool FacetTable::is_inner(const Nodes& sorted) const {
@@ -258,7 +265,8 @@ bool FacetTable::is_inner(const Nodes& sorted) const {
 std::vector<ElementFacet> FacetTable::outer() const {
   std::vector<ElementFacet> found;
   for (const Place& place : places_) {
-    if (place.count == 1) found.push_back(facet_at(place));
+    if (place.count != 1) continue;
+    found.push_back(element_facet(cell_, place.facet / corners_, place.facet % corners_));
   }
   std::sort(found.begin(), found.end(), [](const ElementFacet& a, const ElementFacet& b) {
     return std::tie(a.number, a.nodes) < std::tie(b.number, b.nodes);

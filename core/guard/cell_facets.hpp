@@ -62,13 +62,15 @@ class FacetTable {
   struct Place {
     std::uint64_t number = 0;
     std::uint32_t facet = 0;  // of the first element: its index times the corners, plus i
-    std::uint32_t count = 0;  // elements; 0: an open place
+    std::uint16_t count = 0;  // elements; 0: an open place
+    bool even = true;         // of the first element's facet
   };
-  [[nodiscard]] ElementFacet facet_at(const Place& place) const;
+  [[nodiscard]] bool holds(const Place& place, std::uint64_t number, const Nodes& nodes) const;
   [[nodiscard]] std::size_t place_of(std::uint64_t number, const Nodes& nodes) const;
 
   const SymmetryCellMesh& cell_;
-  std::size_t left_;
+  std::uint32_t corners_;      // of an element
+  std::size_t left_;           // different facets that may still come
   std::vector<Place> places_;  // a power of two of them
 };
 
