@@ -98,23 +98,33 @@ OrbitEdge orbit_edge(std::int32_t fold,
 std::vector<OrbitEdgeUse> sorted_edge_uses(std::int32_t fold,
                                            std::span<const std::uint8_t> on_axis,
                                            std::span<const OrbitTriangle> triangles) {
-  std::vector<OrbitEdgeUse> uses;
-  uses.reserve(3 * triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t side = 0; side < 3; ++side) {
-      OrbitEdgeUse use;
-      bool swapped = false;
-      use.edge =
-          orbit_edge(fold, on_axis, triangles[t][side], triangles[t][(side + 1) % 3], &swapped);
-      use.triangle = static_cast<std::int32_t>(t);
-      use.side = static_cast<std::int32_t>(side);
-      use.forward = !swapped;
-      uses.push_back(use);
+  const auto use_of = [&](std::size_t t, std::size_t side) {
+    OrbitEdgeUse use;
+    bool swapped = false;
+    use.edge =
+        orbit_edge(fold, on_axis, triangles[t][side], triangles[t][(side + 1) % 3], &swapped);
+    use.triangle = static_cast<std::int32_t>(t);
+    use.side = static_cast<std::int32_t>(side);
+    use.forward = !swapped;
+    return use;
+  };
+  const auto each_side = [&](const auto& take) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      for (std::size_t side = 0; side < 3; ++side) take(use_of(t, side));
     }
+  };
+  // By the lower end in one go: few have the same.
+  std::vector<std::uint32_t> end(on_axis.size() + 1, 0);
+  each_side([&](const OrbitEdgeUse& use) { ++end[at(use.edge.low) + 1]; });
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<OrbitEdgeUse> uses(3 * triangles.size());
+  each_side([&](const OrbitEdgeUse& use) { uses[end[at(use.edge.low)]++] = use; });
+  for (std::size_t orbit = 0, first = 0; orbit < on_axis.size(); first = end[orbit++]) {
+    std::sort(uses.begin() + static_cast<std::ptrdiff_t>(first), uses.begin() + end[orbit],
+              [](const OrbitEdgeUse& x, const OrbitEdgeUse& y) {
+                return std::tie(x.edge, x.triangle, x.side) < std::tie(y.edge, y.triangle, y.side);
+              });
   }
-  std::sort(uses.begin(), uses.end(), [](const OrbitEdgeUse& x, const OrbitEdgeUse& y) {
-    return std::tie(x.edge, x.triangle, x.side) < std::tie(y.edge, y.triangle, y.side);
-  });
   return uses;
 }
 

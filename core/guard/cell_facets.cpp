@@ -1,7 +1,9 @@
 #include "core/guard/cell_facets.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace symcell::internal {
@@ -11,16 +13,31 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
+// Facet i lies opposite corner i; its nodes run counter-clockwise seen from outside.
+constexpr std::int32_t kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+constexpr std::int32_t kSides[3][2] = {{1, 2}, {2, 0}, {0, 1}};
+
+std::uint64_t mix(std::uint64_t x) {
+  x ^= x >> 32;
+  x *= 0xd6e8feb86659fd93ULL;
+  x ^= x >> 29;
+  x *= 0x9e3779b97f4a7c15ULL;
+  return x ^ (x >> 32);
+}
+
+// Of a table with open places for so many different things: at most two thirds are taken.
+std::size_t table_size(std::size_t things) {
+  return std::bit_ceil(things + things / 2 + 2);
+}
+
 class LinkChecker {
  public:
   LinkChecker(const SymmetryCellMesh& cell,
               const std::vector<char>& marked,
-              const std::vector<ElementFacet>& facets,
-              const std::vector<std::size_t>& inner,
+              const std::vector<InnerFacet>& inner,
               const std::vector<char>& pinched)
       : cell_(cell),
         marked_(marked),
-        facets_(facets),
         inner_(inner),
         pinched_(pinched),
         dimension_(cell.dimension),
@@ -30,7 +47,7 @@ class LinkChecker {
   Result<void> check_links() {
     join_places();
     std::vector<std::uint32_t> class_of(cell_.nodes.size(), 0);
-    std::vector<std::pair<std::int32_t, std::int32_t>> edges;  // each as often as it has classes
+    std::vector<std::uint64_t> edges;  // each as often as it has classes
     for (std::size_t e = 0; e < place_.size(); ++e) {
       if (place_[e] == 0) continue;
       const std::size_t first = place_[e] * kPlaces;
@@ -46,20 +63,12 @@ class LinkChecker {
         for (std::size_t j = 0; j < i && dimension_ == 3; ++j) {
           const std::size_t place = first + kEdgePlace[i][j];
           if (is_marked(v[j]) && root(place) == place) {
-            edges.emplace_back(std::min(v[i], v[j]), std::max(v[i], v[j]));
+            edges.push_back(edge_name(std::min(v[i], v[j]), std::max(v[i], v[j])));
           }
         }
       }
     }
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t i = 1; i < edges.size(); ++i) {
-      const auto [a, b] = edges[i];
-      const bool exempt = pinched_[at(cell_.nodes[at(a)].orbit)] != 0 &&
-                          pinched_[at(cell_.nodes[at(b)].orbit)] != 0;
-      if (edges[i] != edges[i - 1] || exempt) continue;
-      return broken("elements at the edge " + name_of({a, b, -1}) + " touch there only");
-    }
-    return {};
+    return check_edges(edges);
   }
 
  private:
@@ -67,6 +76,33 @@ class LinkChecker {
   static constexpr std::size_t kPlaces = 10;
   static constexpr std::size_t kEdgePlace[4][4] = {
       {0, 4, 5, 6}, {4, 0, 7, 8}, {5, 7, 0, 9}, {6, 8, 9, 0}};
+
+  // Of nodes low < high, which is not 0.
+  static std::uint64_t edge_name(std::int32_t low, std::int32_t high) {
+    return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
+  }
+
+  // What is named twice has two classes of elements.
+  [[nodiscard]] Result<void> check_edges(const std::vector<std::uint64_t>& edges) const {
+    std::vector<std::uint64_t> met(table_size(edges.size()), 0);
+    const std::size_t last = met.size() - 1;
+    for (const std::uint64_t edge : edges) {
+      std::size_t i = mix(edge) & last;
+      while (met[i] != 0 && met[i] != edge) i = (i + 1) & last;
+      if (met[i] == 0) {
+        met[i] = edge;
+        continue;
+      }
+      const auto low = static_cast<std::int32_t>(edge >> 32);
+      const auto high = static_cast<std::int32_t>(edge & 0xffffffffU);
+      if (pinched_[at(cell_.nodes[at(low)].orbit)] != 0 &&
+          pinched_[at(cell_.nodes[at(high)].orbit)] != 0) {
+        continue;
+      }
+      return broken("elements at the edge " + name_of({low, high, -1}) + " touch there only");
+    }
+    return {};
+  }
 
   [[nodiscard]] const std::int32_t* element(std::size_t e) const {
     return &cell_.elements[e * corners_];
@@ -88,35 +124,41 @@ class LinkChecker {
     joined_[std::max(i, j)] = static_cast<std::uint32_t>(std::min(i, j));
   }
 
-  // Elements with a marked node, numbered; their places, joined over facets.
+  // Elements with a marked node, numbered; their places at marked nodes and at edges between two,
+  // joined over facets.
   void join_places() {
     place_.assign(cell_.element_count(), 0);
-    std::size_t count = 0;
-    for (const ElementFacet& f : facets_) {
-      std::uint32_t& first = place_[at(f.element)];
-      if (first == 0) first = static_cast<std::uint32_t>(++count);
+    std::uint32_t count = 0;
+    for (std::size_t e = 0; e < place_.size(); ++e) {
+      const std::int32_t* v = element(e);
+      if (std::any_of(v, v + corners_, [&](std::int32_t n) { return is_marked(n); })) {
+        place_[e] = ++count;
+      }
     }
-    joined_.resize((count + 1) * kPlaces);
+    joined_.resize((count + std::size_t{1}) * kPlaces);
     std::iota(joined_.begin(), joined_.end(), std::uint32_t{0});
-    for (const std::size_t i : inner_) {
-      const std::int32_t e = facets_[i].element, f = facets_[i + 1].element;
-      const std::size_t first = place_[at(e)] * kPlaces, second = place_[at(f)] * kPlaces;
-      std::array<std::size_t, 3> in_e{}, in_f{};
-      for (std::size_t j = 0; j < static_cast<std::size_t>(dimension_); ++j) {
-        in_e[j] = local(e, facets_[i].nodes[j]);
-        in_f[j] = local(f, facets_[i].nodes[j]);
-        join(first + in_e[j], second + in_f[j]);
-        for (std::size_t k = 0; k < j && dimension_ == 3; ++k) {
-          join(first + kEdgePlace[in_e[j]][in_e[k]], second + kEdgePlace[in_f[j]][in_f[k]]);
+    const auto d = static_cast<std::size_t>(dimension_);
+    for (const InnerFacet& f : inner_) {
+      const auto [p, q] = f.elements;
+      const std::size_t first = place_[at(p)] * kPlaces, second = place_[at(q)] * kPlaces;
+      std::array<std::size_t, 3> in_p{}, in_q{};
+      std::size_t n = 0;
+      for (std::size_t j = 0; j < d; ++j) {
+        if (!is_marked(f.nodes[j])) continue;
+        in_p[n] = local(p, f.nodes[j]);
+        in_q[n] = local(q, f.nodes[j]);
+        join(first + in_p[n], second + in_q[n]);
+        for (std::size_t k = 0; k < n && dimension_ == 3; ++k) {
+          join(first + kEdgePlace[in_p[n]][in_p[k]], second + kEdgePlace[in_q[n]][in_q[k]]);
         }
+        ++n;
       }
     }
   }
 
   const SymmetryCellMesh& cell_;
   const std::vector<char>& marked_;
-  const std::vector<ElementFacet>& facets_;
-  const std::vector<std::size_t>& inner_;
+  const std::vector<InnerFacet>& inner_;
   const std::vector<char>& pinched_;
   std::int32_t dimension_;
   std::size_t corners_;
@@ -141,13 +183,6 @@ bool sort_nodes(Nodes& n, std::int32_t dimension) {
 }
 
 std::uint64_t number_of(const Nodes& n) {
-  const auto mix = [](std::uint64_t x) {
-    x ^= x >> 32;
-    x *= 0xd6e8feb86659fd93ULL;
-    x ^= x >> 29;
-    x *= 0x9e3779b97f4a7c15ULL;
-    return x ^ (x >> 32);
-  };
   const auto u = [](std::int32_t i) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i));
   };
@@ -163,12 +198,87 @@ Failure broken(const std::string& what) {
   return fail(ErrorCode::kInternal, "mesh check 'cell': " + what);
 }
 
+namespace {
+
+Nodes nodes_of_facet(const SymmetryCellMesh& cell, std::size_t e, std::size_t i) {
+  if (cell.dimension == 2) {
+    const std::int32_t* v = &cell.elements[3 * e];
+    return {v[kSides[i][0]], v[kSides[i][1]], -1};
+  }
+  const std::int32_t* v = &cell.elements[4 * e];
+  return {v[kFaces[i][0]], v[kFaces[i][1]], v[kFaces[i][2]]};
+}
+
+}  // namespace
+
+ElementFacet element_facet(const SymmetryCellMesh& cell, std::size_t e, std::size_t i) {
+  ElementFacet facet;
+  facet.element = static_cast<std::int32_t>(e);
+  facet.nodes = nodes_of_facet(cell, e, i);
+  facet.even = sort_nodes(facet.nodes, cell.dimension);
+  facet.number = number_of(facet.nodes);
+  return facet;
+}
+
+FacetTable::FacetTable(const SymmetryCellMesh& cell, std::size_t most)
+    : cell_(cell),
+      corners_(static_cast<std::uint32_t>(cell.dimension) + 1),
+      left_(most),
+      places_(table_size(most)) {
+}
+
+bool FacetTable::holds(const Place& place, std::uint64_t number, const Nodes& nodes) const {
+  if (place.number != number) return false;
+  Nodes own = nodes_of_facet(cell_, place.facet / corners_, place.facet % corners_);
+  sort_nodes(own, cell_.dimension);
+  return own == nodes;
+}
+
+std::size_t FacetTable::place_of(std::uint64_t number, const Nodes& nodes) const {
+  const std::size_t last = places_.size() - 1;
+  std::size_t i = number & last;
+  while (places_[i].count != 0 && !holds(places_[i], number, nodes)) i = (i + 1) & last;
+  return i;
+}
+
+Result<std::int32_t> FacetTable::add(const ElementFacet& facet, std::size_t i) {
+  Place& place = places_[place_of(facet.number, facet.nodes)];
+  if (place.count == 0) {
+    if (left_ == 0) return broken("more facets have one element than are on its surface");
+    --left_;
+    place = {facet.number,
+             static_cast<std::uint32_t>(facet.element) * corners_ + static_cast<std::uint32_t>(i),
+             1, facet.even};
+    return -1;
+  }
+  if (++place.count > 2 || place.even == facet.even) {
+    return broken("the facet " + name_of(facet.nodes) + " has " + std::to_string(place.count) +
+                  " elements");
+  }
+  return static_cast<std::int32_t>(place.facet / corners_);
+}
+
+bool FacetTable::is_inner(const Nodes& sorted) const {
+  return places_[place_of(number_of(sorted), sorted)].count == 2;
+}
+
+std::vector<ElementFacet> FacetTable::outer() const {
+  std::vector<ElementFacet> found;
+  for (const Place& place : places_) {
+    if (place.count != 1) continue;
+    found.push_back(element_facet(cell_, place.facet / corners_, place.facet % corners_));
+  }
+  std::sort(found.begin(), found.end(), [](const ElementFacet& a, const ElementFacet& b) {
+    return std::tie(a.number, a.nodes) < std::tie(b.number, b.nodes);
+  });
+  return found;
+}
+
 Result<void> check_cell_links(const SymmetryCellMesh& cell,
                               const std::vector<char>& marked,
-                              const std::vector<ElementFacet>& facets,
-                              const std::vector<std::size_t>& inner,
+                              const std::vector<InnerFacet>& inner,
                               const std::vector<char>& pinched) {
-  return LinkChecker(cell, marked, facets, inner, pinched).check_links();
+  return LinkChecker(cell, marked, inner, pinched).check_links();
 }
 
 }  // namespace symcell::internal

@@ -15,7 +15,7 @@ using Nodes = std::array<std::int32_t, 3>;  // of a facet, ascending; of an edge
 
 struct ElementFacet {
   Nodes nodes;
-  std::uint64_t number = 0;  // of the nodes: what facets are sorted by
+  std::uint64_t number = 0;  // of the nodes: what facets are found by
   bool even = true;          // the nodes run counter-clockwise seen from outside the element
   std::int32_t element = 0;
 };
@@ -30,14 +30,56 @@ bool sort_nodes(Nodes& nodes, std::int32_t dimension);
 
 [[nodiscard]] Failure broken(const std::string& what);
 
+// A facet between two elements.
+struct InnerFacet {
+  Nodes nodes;
+  std::array<std::int32_t, 2> elements{};
+};
+
+// Facet i of element e, opposite its corner i.
+[[nodiscard]] ElementFacet element_facet(const SymmetryCellMesh& cell,
+                                         std::size_t e,
+                                         std::size_t i);
+
+// Facets of elements by their nodes: which have one element and which have two. A table with open
+// places, small and much faster than sorting.
+class FacetTable {
+ public:
+  // `most`: different facets.
+  FacetTable(const SymmetryCellMesh& cell, std::size_t most);
+
+  // Adds facet i of its element. The other element of the facet, -1: this is the first.
+  // Errors: a third element, two on one side, more different facets than were said to come.
+  [[nodiscard]] Result<std::int32_t> add(const ElementFacet& facet, std::size_t i);
+
+  // Whether a facet of these nodes, ascending, has two elements.
+  [[nodiscard]] bool is_inner(const Nodes& sorted) const;
+
+  // Those with one element, sorted by number and nodes.
+  [[nodiscard]] std::vector<ElementFacet> outer() const;
+
+ private:
+  struct Place {
+    std::uint64_t number = 0;
+    std::uint32_t facet = 0;  // of the first element: its index times the corners, plus i
+    std::uint16_t count = 0;  // elements; 0: an open place
+    bool even = true;         // of the first element's facet
+  };
+  [[nodiscard]] bool holds(const Place& place, std::uint64_t number, const Nodes& nodes) const;
+  [[nodiscard]] std::size_t place_of(std::uint64_t number, const Nodes& nodes) const;
+
+  const SymmetryCellMesh& cell_;
+  std::uint32_t corners_;      // of an element
+  std::size_t left_;           // different facets that may still come
+  std::vector<Place> places_;  // a power of two of them
+};
+
 // Whether all elements at a node of the cell's surface, in space at an edge of it too, hang
-// together by facets. `marked`: the nodes of the surface.  `facets`: of elements, with a marked
-// node, those of the same nodes together.  `inner`: indices of the first of two such.  `pinched`:
-// per orbit; there the full mesh touches itself, and the cell may.
+// together by facets. `marked`: the nodes of the surface.  `inner`: facets with a marked node and
+// two elements.  `pinched`: per orbit; there the full mesh touches itself, and the cell may.
 [[nodiscard]] Result<void> check_cell_links(const SymmetryCellMesh& cell,
                                             const std::vector<char>& marked,
-                                            const std::vector<ElementFacet>& facets,
-                                            const std::vector<std::size_t>& inner,
+                                            const std::vector<InnerFacet>& inner,
                                             const std::vector<char>& pinched);
 
 }  // namespace symcell::internal

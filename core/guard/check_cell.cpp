@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -18,7 +18,10 @@ namespace {
 
 using internal::broken;
 using internal::check_cell_links;
+using internal::element_facet;
 using internal::ElementFacet;
+using internal::FacetTable;
+using internal::InnerFacet;
 using internal::name_of;
 using internal::Nodes;
 using internal::number_of;
@@ -28,12 +31,12 @@ std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-// Facet i lies opposite corner i; its nodes run counter-clockwise seen from outside.
-constexpr std::int32_t kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-constexpr std::int32_t kSides[3][2] = {{1, 2}, {2, 0}, {0, 1}};
 // Roundings of the difference of two nodes, of the largest coordinate: each is the sum of some
 // products of numbers no larger, rounded to 2^-53 of it.
 constexpr double kCoordinateRounding = 32 * 0x1p-53;
+
+// So many open facets are found by their names; more are too many before that.
+constexpr std::size_t kOpenFacetsNamed = 64;
 
 class CellChecker {
  public:
@@ -52,7 +55,7 @@ class CellChecker {
     SYMCELL_TRY(check_bounds());
     SYMCELL_TRY(check_outer());
     SYMCELL_TRY(check_boundary());
-    return check_cell_links(cell_, marked_, facets_, inner_, pinched_);
+    return check_cell_links(cell_, marked_, inner_, pinched_);
   }
 
  private:
@@ -178,56 +181,47 @@ class CellChecker {
     }
   }
 
-  template <class F>
-  void each_facet(std::size_t e, const F& f) const {
-    const std::int32_t* v = element(e);
-    for (std::size_t i = 0; i < corners_; ++i) {
-      ElementFacet facet;
-      facet.element = static_cast<std::int32_t>(e);
-      if (dimension_ == 2) {
-        facet.nodes = {v[kSides[i][0]], v[kSides[i][1]], -1};
-      } else {
-        facet.nodes = {v[kFaces[i][0]], v[kFaces[i][1]], v[kFaces[i][2]]};
-      }
-      facet.even = sort_nodes(facet.nodes, dimension_);
-      facet.number = number_of(facet.nodes);
-      f(facet);
-    }
-  }
-
   [[nodiscard]] bool is_marked(std::int32_t n) const { return n >= 0 && marked_[at(n)] != 0; }
   [[nodiscard]] bool all_marked(const Nodes& n) const {
     return is_marked(n[0]) && is_marked(n[1]) && (n[2] < 0 || is_marked(n[2]));
   }
 
-  // Those with a marked node are kept, sorted; of the others the sides must cancel.
+  // How many facets of elements have a marked node.
+  [[nodiscard]] std::size_t count_marked_facets() const {
+    std::size_t count = 0;
+    for (std::size_t e = 0; e < cell_.element_count(); ++e) {
+      const std::int32_t* v = element(e);
+      const auto marked = std::count_if(v, v + corners_, [&](auto n) { return is_marked(n); });
+      if (marked > 0) count += marked == 1 ? corners_ - 1 : corners_;
+    }
+    return count;
+  }
+
+  // Those with a marked node are matched one by one; of the others the sides must cancel.
   Result<void> gather_facets() {
+    const std::size_t sides = count_marked_facets();
+    const std::size_t surface =
+        (cell_.boundary.size() + cell_.lower_facets.size() + cell_.higher_facets.size()) /
+        static_cast<std::size_t>(dimension_);
+    table_.emplace(cell_, std::min(sides, (sides + surface) / 2 + kOpenFacetsNamed));
+    inner_.reserve(sides / 2);
     std::uint64_t sum = 0;
     for (std::size_t e = 0; e < cell_.element_count(); ++e) {
-      each_facet(e, [&](const ElementFacet& f) {
-        if (is_marked(f.nodes[0]) || is_marked(f.nodes[1]) || is_marked(f.nodes[2])) {
-          facets_.push_back(f);
-        } else {
+      for (std::size_t i = 0; i < corners_; ++i) {
+        const ElementFacet f = element_facet(cell_, e, i);
+        if (!is_marked(f.nodes[0]) && !is_marked(f.nodes[1]) && !is_marked(f.nodes[2])) {
           sum += f.even ? f.number : ~f.number + 1;
+          continue;
         }
-      });
+        const auto other = table_->add(f, i);
+        if (!other) return error_of(other);
+        if (*other >= 0) inner_.push_back({f.nodes, {*other, f.element}});
+      }
     }
     if (sum != 0) return broken("facets inside have not one element on each side");
-    std::sort(facets_.begin(), facets_.end(), [](const ElementFacet& a, const ElementFacet& b) {
-      return std::tie(a.number, a.nodes, a.element) < std::tie(b.number, b.nodes, b.element);
-    });
-    for (std::size_t i = 0, next = 0; i < facets_.size(); i = next) {
-      for (next = i; next < facets_.size() && facets_[next].nodes == facets_[i].nodes;) ++next;
-      const bool inner = next - i == 2 && facets_[i].even != facets_[i + 1].even;
-      if (!inner && (next - i != 1 || !all_marked(facets_[i].nodes))) {
-        return broken("the facet " + name_of(facets_[i].nodes) + " has " +
-                      std::to_string(next - i) + " elements");
-      }
-      if (inner) {
-        inner_.push_back(i);
-      } else {
-        outer_.push_back(facets_[i]);
-      }
+    outer_ = table_->outer();
+    for (const ElementFacet& f : outer_) {
+      if (!all_marked(f.nodes)) return broken("the facet " + name_of(f.nodes) + " has one element");
     }
     role_.assign(outer_.size(), Role::kNone);
     return {};
@@ -296,16 +290,6 @@ class CellChecker {
     return v.orbit == w.orbit && (axis || w.exponent == (v.exponent + 1) % cell_.fold);
   }
 
-  // Whether a facet has two elements; those without a node on the surface are not asked for.
-  [[nodiscard]] bool is_inner(const Nodes& sorted) const {
-    const std::uint64_t number = number_of(sorted);
-    const auto found =
-        std::lower_bound(inner_.begin(), inner_.end(), sorted, [&](std::size_t i, const Nodes& n) {
-          return std::tie(facets_[i].number, facets_[i].nodes) < std::tie(number, n);
-        });
-    return found != inner_.end() && facets_[*found].nodes == sorted;
-  }
-
   // What is of no bound must be listed as boundary; what is listed may be inside, on a facet or
   // segment of the model.
   Result<void> check_outer() {
@@ -315,7 +299,8 @@ class CellChecker {
       sort_nodes(n, dimension_);
       listed.push_back(n);
       const std::int64_t found = find_outer(n);
-      if (found < 0 && !is_inner(n)) {
+      // Those without a node on the surface are not asked for.
+      if (found < 0 && !table_->is_inner(n)) {
         return broken("the facet " + name_of(n) + " of the boundary is of no element");
       }
       Role none = Role::kNone;
@@ -390,12 +375,12 @@ class CellChecker {
   const BoundaryTopology* boundary_;
   std::int32_t dimension_;
   std::size_t corners_;
-  std::vector<char> marked_;          // nodes of the cell's surface, and of facets inside
-  std::vector<ElementFacet> facets_;  // with a marked node, sorted
-  std::vector<std::size_t> inner_;    // of these the first sides of those with two elements
-  std::vector<ElementFacet> outer_;   // with one element, sorted
-  std::vector<Role> role_;            // of outer_
-  std::vector<char> pinched_;         // orbits at which the full mesh touches itself
+  std::vector<char> marked_;         // nodes of the cell's surface, and of facets inside
+  std::optional<FacetTable> table_;  // of facets with a marked node
+  std::vector<InnerFacet> inner_;    // of these those with two elements
+  std::vector<ElementFacet> outer_;  // with one element, sorted
+  std::vector<Role> role_;           // of outer_
+  std::vector<char> pinched_;        // orbits at which the full mesh touches itself
 };
 
 }  // namespace

@@ -80,7 +80,7 @@ Result<void> Coarsener::run() {
       } else if (remove_and_mend(v)) {
         ++counters_.removed;
         ++gained;
-      } else if (round + 1 < rounds && surgery_.relocate(v)) {
+      } else if (round + 1 < rounds && keep_if_none_bad([&] { return surgery_.relocate(v); })) {
         ++counters_.relocations;
       }
     }
@@ -106,6 +106,23 @@ void Coarsener::gather_link(VertexId v) {
   }
 }
 
+// The flips that follow an operation raise the smallest of two triangles' angles. Where that is the
+// angle of an exempt triangle, the exemption may go to one of the new triangles and the other one be
+// bad, although the star as it was made was good.
+template <class Operation>
+bool Coarsener::keep_if_none_bad(const Operation& operation) {
+  if (!criteria_.exempts_any()) return operation();
+  mesh_.begin();
+  if (operation() && std::ranges::none_of(editor_.created(), [&](TriangleId t) {
+        return mesh_.alive(t) && criteria_.is_bad(mesh_, t);
+      })) {
+    mesh_.commit();
+    return true;
+  }
+  mesh_.roll_back();
+  return false;
+}
+
 bool Coarsener::merge_with_neighbour(VertexId v) {
   gather_link(v);
   const Point2 p = mesh_.point(v);
@@ -122,10 +139,11 @@ bool Coarsener::merge_with_neighbour(VertexId v) {
     if (!v_free && !w_free && v > w.orbit) continue;  // looked at from the other end
     if (v_free && w_free && v > w.orbit) continue;
     // The one on a segment, if any, goes first; its frame is the one used.
-    const bool ok = v_free && !w_free
-                        ? surgery_.merge({w.orbit, 0}, {v, mesh_.subtract(0, w.exponent)})
-                        : surgery_.merge({v, 0}, w);
-    if (ok) return true;
+    const auto merge = [&] {
+      return v_free && !w_free ? surgery_.merge({w.orbit, 0}, {v, mesh_.subtract(0, w.exponent)})
+                               : surgery_.merge({v, 0}, w);
+    };
+    if (keep_if_none_bad(merge)) return true;
   }
   return false;
 }

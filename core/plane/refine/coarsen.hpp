@@ -37,6 +37,8 @@ class Coarsener {
 
  private:
   [[nodiscard]] bool is_steiner(VertexId v) const;
+  template <class Operation>
+  [[nodiscard]] bool keep_if_none_bad(const Operation& operation);
   [[nodiscard]] bool merge_with_neighbour(VertexId v);
   [[nodiscard]] bool has_room_without(VertexId v);
   [[nodiscard]] bool remove_and_mend(VertexId v);

@@ -61,6 +61,10 @@ class Criteria {
   [[nodiscard]] Exemption exemption(const QuotientTriangulation& mesh,
                                     TriangleId t,
                                     const Assessment& assessment) const;
+  // Whether the input has places where a triangle may be exempt.
+  [[nodiscard]] bool exempts_any() const {
+    return !narrow_.empty() || centre_is_narrow_ || centre_is_exact_;
+  }
   // Bad and not exempt.
   [[nodiscard]] bool is_bad(const QuotientTriangulation& mesh, TriangleId t) const {
     const Assessment a = assess(mesh, mesh.triangle(t));

@@ -1,21 +1,17 @@
 #include "core/solid/quotient/validate.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "core/geometry/tolerances.hpp"
+#include "core/solid/quotient/edge_turns.hpp"
 #include "core/solid/quotient/lifted_predicates.hpp"
 
 namespace symcell::solid {
 namespace {
 
-// Angles round an edge add up to a multiple of the full turn by the layers below, up to rounding;
-// only the multiple is asked for.
-constexpr double kTurnSlack = 0.01;
 // Facets are planar up to the rounding of their vertices, so volumes agree up to that only.
 constexpr double kVolumeSlack = 1e-7;
 
@@ -105,6 +101,7 @@ class Checker {
       const Tet& other = mesh_.tet(tet_of(g));
       const std::uint32_t j = face_of(g);
       if (other.nb[j] != 4 * t + i) return broken("incidence", t, i, "neighbour not mutual");
+      if (g < 4 * t + i) continue;  // looked at from the other side
       if (mesh_.add(tet.off[i], other.off[j]) != 0) return broken("incidence", t, i, "exponents");
       if (tet.facet[i] != other.facet[j]) return broken("incidence", t, i, "facets differ");
       if (tet.facet[i] == kNoFacet && tet.region != other.region) {
@@ -200,106 +197,10 @@ class Checker {
     return {};
   }
 
-  // Interior angle of the tetrahedron at edge ij.
-  [[nodiscard]] double dihedral(TetId t, std::uint32_t i, std::uint32_t j) const {
-    std::array<std::uint32_t, 2> o{};
-    std::size_t n = 0;
-    for (std::uint32_t m = 0; m < 4; ++m) {
-      if (m != i && m != j) o[n++] = m;
-    }
-    const Point3 a = mesh_.corner_point(t, i);
-    const Point3 axis = mesh_.corner_point(t, j) - a;
-    const Point3 p = cross(axis, mesh_.corner_point(t, o[0]) - a);
-    const Point3 q = cross(axis, mesh_.corner_point(t, o[1]) - a);
-    return std::atan2(length(cross(p, q)), dot(p, q));
-  }
-
-  Result<void> angles() {
-    std::vector<std::uint8_t> done(mesh_.tet_slots(), 0);  // a bit per edge
-    std::vector<TetCopy> ring;
-    return each_tet([&](TetId t) -> Result<void> {
-      for (std::uint32_t e = 0; e < 6; ++e) {
-        if ((done[t] >> e & 1) != 0) continue;
-        const OrbitVertex a = mesh_.corner(t, kEdgeCorners[e][0]);
-        const OrbitVertex b = mesh_.corner(t, kEdgeCorners[e][1]);
-        ring.clear();
-        const bool closed = mesh_.ring({t, 0}, a, b, ring);
-        for (const TetCopy& c : ring) {
-          done[c.t] = static_cast<std::uint8_t>(done[c.t] | 1U << local_edge(c, a, b));
-        }
-        const bool axis = mesh_.on_axis(a.orbit) && mesh_.on_axis(b.orbit);
-        const bool ok = closed && !axis ? turns_once(ring, a, b) : adds_up(ring, a, b, closed);
-        if (!ok) return broken("embedding", t, e, "dihedral angles do not make one turn");
-      }
-      return {};
-    });
-  }
-
-  // Each tetrahedron turns by less than half a turn, all the same way, so a closed ring passes from
-  // below to above a plane through the edge once a turn; signs of a vertex are the same in both of
-  // its tetrahedra, whatever their rounding.
-  [[nodiscard]] bool turns_once(const std::vector<TetCopy>& ring,
-                                OrbitVertex a,
-                                OrbitVertex b) const {
-    const Point3 from = mesh_.lift(a), along = mesh_.lift(b) - from;
-    Point3 up;
-    int passes = 0;
-    for (const TetCopy& c : ring) {
-      std::array<std::uint32_t, 2> o = opposite_ends(c, a, b);
-      const Point3 p = mesh_.lift(mesh_.corner(c, o[0])) - from;
-      const Point3 q = mesh_.lift(mesh_.corner(c, o[1])) - from;
-      if (up == Point3{}) up = cross(along, p + q);
-      passes += dot(up, p) < 0 && dot(up, q) >= 0 ? 1 : 0;
-    }
-    return passes == 1;
-  }
-
-  // The corners off edge ab, as they follow each other round it.
-  [[nodiscard]] std::array<std::uint32_t, 2> opposite_ends(TetCopy c,
-                                                           OrbitVertex a,
-                                                           OrbitVertex b) const {
-    std::array<std::uint32_t, 4> order{};  // a, b, the others
-    std::size_t others = 2;
-    for (std::uint32_t i = 0; i < 4; ++i) {
-      const OrbitVertex x = mesh_.corner(c, i);
-      if (x == a) {
-        order[0] = i;
-      } else if (x == b) {
-        order[1] = i;
-      } else if (others < 4) {
-        order[others++] = i;
-      }
-    }
-    bool even = true;
-    for (std::size_t i = 0; i < 4; ++i) {
-      for (std::size_t j = i + 1; j < 4; ++j) even = even == (order[i] < order[j]);
-    }
-    if (even) return {order[2], order[3]};
-    return {order[3], order[2]};
-  }
-
-  // An open ring stays below a turn, one about the axis makes the sector's angle.
-  [[nodiscard]] bool adds_up(const std::vector<TetCopy>& ring,
-                             OrbitVertex a,
-                             OrbitVertex b,
-                             bool closed) const {
-    double sum = 0;
-    for (const TetCopy& c : ring) {
-      const std::uint32_t e = local_edge(c, a, b);
-      sum += dihedral(c.t, kEdgeCorners[e][0], kEdgeCorners[e][1]);
-    }
-    const bool axis = mesh_.on_axis(a.orbit) && mesh_.on_axis(b.orbit);
-    const double turn = 2 * std::numbers::pi / (axis ? static_cast<double>(mesh_.fold()) : 1.0);
-    return closed ? std::abs(sum - turn) < kTurnSlack * turn : sum < (1 + kTurnSlack) * turn;
-  }
-
-  [[nodiscard]] std::uint32_t local_edge(TetCopy c, OrbitVertex a, OrbitVertex b) const {
-    for (std::uint32_t e = 0; e < 6; ++e) {
-      const OrbitVertex p = mesh_.corner(c, kEdgeCorners[e][0]),
-                        q = mesh_.corner(c, kEdgeCorners[e][1]);
-      if ((p == a && q == b) || (p == b && q == a)) return e;
-    }
-    return 0;  // the ring holds tetrahedra at the edge only
+  Result<void> angles() const {
+    const auto wrong = find_wrong_turn(mesh_);
+    if (!wrong) return {};
+    return broken("embedding", wrong->tet, wrong->edge, "dihedral angles do not make one turn");
   }
 
   Result<void> volume(double expected) {

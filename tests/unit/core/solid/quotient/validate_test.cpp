@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstddef>
+#include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "tests/support/solid_samples.hpp"
 
@@ -130,6 +134,58 @@ TEST(ValidateTetrahedra, SeesAMeshThatWindsTwice) {
   ASSERT_TRUE(mesh.build(std::array{t}));
   EXPECT_TRUE(validate(mesh, ValidationLevel::kIncidence));
   EXPECT_TRUE(has(complaint(mesh), "dihedral"));
+}
+
+// Tetrahedra round the edge from (0, 0, 0) to (0, 0, 1), each turned on by `step_deg`; the last one
+// adjoins the first one or the row stays open.
+QuotientTetrahedralization fan(int count, double step_deg, bool closed) {
+  QuotientTetrahedralization mesh(1);
+  const VertexId foot = mesh.add_vertex({0, 0, 0}, VertexKind::kInput, false);
+  const VertexId head = mesh.add_vertex({0, 0, 1}, VertexKind::kInput, false);
+  std::vector<VertexId> rim;
+  for (int i = 0; i < count + (closed ? 0 : 1); ++i) {
+    const double angle = i * step_deg * std::numbers::pi / 180;
+    rim.push_back(
+        mesh.add_vertex({std::cos(angle), std::sin(angle), 0.5}, VertexKind::kInput, false));
+  }
+  std::vector<NewTet> tets(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < tets.size(); ++i) {
+    NewTet& t = tets[i];
+    t.c[0] = {foot, 0};
+    t.c[1] = {rim[i], 0};
+    t.c[2] = {rim[(i + 1) % rim.size()], 0};
+    t.c[3] = {head, 0};
+    t.facet[0] = t.facet[3] = 0;
+    if (!closed && i == 0) t.facet[2] = 0;
+    if (!closed && i + 1 == tets.size()) t.facet[1] = 0;
+  }
+  EXPECT_TRUE(mesh.build(tets));
+  return mesh;
+}
+
+TEST(ValidateTetrahedra, SeesEdgesThatAreGoneRoundTwice) {
+  EXPECT_TRUE(validate(fan(4, 90, true), ValidationLevel::kEmbedding));
+  EXPECT_TRUE(validate(fan(3, 120, true), ValidationLevel::kEmbedding));
+  EXPECT_TRUE(validate(fan(40, 9, true), ValidationLevel::kEmbedding));
+  EXPECT_TRUE(has(complaint(fan(6, 120, true)), "dihedral"));
+  EXPECT_TRUE(has(complaint(fan(8, 90, true)), "dihedral"));
+  EXPECT_TRUE(has(complaint(fan(80, 9, true)), "dihedral"));
+  EXPECT_TRUE(has(complaint(fan(9, 120, true)), "dihedral"));
+  // Flat, up to all round where two facets touch, beyond that, and twice round.
+  for (const double step : {1.0, 60.0, 90.0, 120.0}) {
+    EXPECT_TRUE(validate(fan(1, step, false), ValidationLevel::kEmbedding));
+    EXPECT_TRUE(validate(fan(2, step, false), ValidationLevel::kEmbedding));
+    EXPECT_TRUE(validate(fan(3, step, false), ValidationLevel::kEmbedding));
+  }
+  EXPECT_TRUE(validate(fan(4, 90, false), ValidationLevel::kEmbedding));
+  EXPECT_TRUE(validate(fan(360, 1, false), ValidationLevel::kEmbedding));
+  EXPECT_TRUE(validate(fan(359, 1, false), ValidationLevel::kEmbedding));
+  for (const int count : {365, 540, 719, 720}) {
+    EXPECT_TRUE(has(complaint(fan(count, 1, false)), "dihedral")) << count;
+  }
+  EXPECT_TRUE(has(complaint(fan(3, 140, false)), "dihedral"));
+  EXPECT_TRUE(has(complaint(fan(3, 175, false)), "dihedral"));
+  EXPECT_TRUE(has(complaint(fan(5, 90, false)), "dihedral"));
 }
 
 TEST(ValidateTetrahedra, CountsWhatIsNotDelaunay) {
