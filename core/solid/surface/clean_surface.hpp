@@ -25,6 +25,7 @@ struct CleanSurface {
   double volume = 0;
   double area = 0;
   double diameter = 0;  // of the bounding box
+  double joined = 0;  // how far points were moved at most to collapse edges far below the tolerance
   Box3 box;
 };
 

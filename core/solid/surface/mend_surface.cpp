@@ -4,8 +4,10 @@
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/repair_degeneracies.h>
 #include <CGAL/Surface_mesh.h>
+#include <CGAL/boost/graph/Euler_operations.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 #include <vector>
@@ -59,7 +61,89 @@ std::optional<IndexedSurface> mended_by(const IndexedSurface& surface, const Men
   return mended;
 }
 
+class ShortEdges {
+ public:
+  ShortEdges(Mesh& mesh, double most)
+      : mesh_(mesh),
+        most_(most),
+        moved_(mesh.add_property_map<Mesh::Vertex_index, double>("v:moved", 0).first) {}
+
+  // Whether any was collapsed.
+  bool collapse() {
+    std::vector<std::pair<double, Mesh::Edge_index>> edges;
+    for (const Mesh::Edge_index e : mesh_.edges()) {
+      if (const double l = length(mesh_.halfedge(e)); l < most_) edges.emplace_back(l, e);
+    }
+    std::sort(edges.begin(), edges.end());
+    bool any = false;
+    for (const auto& [l, e] : edges) {
+      if (mesh_.is_removed(e)) continue;
+      const Mesh::Halfedge_index h = mesh_.halfedge(e);
+      if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) continue;
+      const Mesh::Halfedge_index best =
+          worst_after(h) >= worst_after(mesh_.opposite(h)) ? h : mesh_.opposite(h);
+      if (worst_after(best) > 0) {
+        collapse(best);
+        any = true;
+      }
+    }
+    return any;
+  }
+
+ private:
+  [[nodiscard]] double length(Mesh::Halfedge_index h) const {
+    return std::sqrt(CGAL::to_double(
+        CGAL::squared_distance(mesh_.point(mesh_.source(h)), mesh_.point(mesh_.target(h)))));
+  }
+
+  // How far what became the end, or the start, would have moved.
+  [[nodiscard]] double moved_by(Mesh::Halfedge_index h) const {
+    return std::max(moved_[mesh_.target(h)], moved_[mesh_.source(h)] + length(h));
+  }
+
+  // With the start of h drawn to its end: the least share of a triangle's area that points to where
+  // it pointed before; 0 if one turns over or a point would have moved too far.
+  [[nodiscard]] double worst_after(Mesh::Halfedge_index h) const {
+    if (moved_by(h) > most_) return 0;
+    const Mesh::Vertex_index goes = mesh_.source(h), stays = mesh_.target(h);
+    const Kernel::Point_3& place = mesh_.point(stays);
+    double worst = 1;
+    for (const Mesh::Halfedge_index in : mesh_.halfedges_around_target(mesh_.opposite(h))) {
+      const Mesh::Vertex_index a = mesh_.source(in), b = mesh_.target(mesh_.next(in));
+      if (a == stays || b == stays) continue;
+      const Kernel::Point_3 &p = mesh_.point(goes), &q = mesh_.point(b), &r = mesh_.point(a);
+      const Kernel::Vector_3 before = CGAL::cross_product(q - p, r - p),
+                             after = CGAL::cross_product(q - place, r - place);
+      const double after2 = after.squared_length(), before2 = before.squared_length();
+      if (!(after2 > 0)) return 0;
+      if (!(before2 > 0)) continue;
+      worst = std::min(worst, before * after / std::sqrt(before2 * after2));
+      if (worst <= kLeastTurn) return 0;
+    }
+    return worst;
+  }
+
+  void collapse(Mesh::Halfedge_index h) {
+    const Kernel::Point_3 place = mesh_.point(mesh_.target(h));
+    const double moved = moved_by(h);
+    const Mesh::Vertex_index left = CGAL::Euler::collapse_edge(mesh_.edge(h), mesh_);
+    mesh_.point(left) = place;
+    moved_[left] = moved;
+  }
+
+  // Cosine of what a triangle may turn by: 60 degrees. Those that stand on a short edge turn most.
+  static constexpr double kLeastTurn = 0.5;
+
+  Mesh& mesh_;
+  double most_;
+  Mesh::Property_map<Mesh::Vertex_index, double> moved_;
+};
+
 }  // namespace
+
+std::optional<IndexedSurface> collapse_short_edges(const IndexedSurface& surface, double most) {
+  return mended_by(surface, [&](Mesh& mesh) { return ShortEdges(mesh, most).collapse(); });
+}
 
 std::optional<IndexedSurface> remove_flat_triangles(const IndexedSurface& surface) {
   const auto point = [&](std::int32_t v) {

@@ -314,6 +314,56 @@ TEST(RepairSurface, LeavesWhatMayBeAHollow) {
   EXPECT_NEAR(clean.volume, 15, 1e-12);
 }
 
+// A prism over a polygon round the origin, whose corners come in pairs hardly apart.
+TriangleSurface prism_of_close_corners(int pairs, double apart) {
+  std::vector<Point3> low;
+  for (int i = 0; i < pairs; ++i) {
+    const double angle = 2 * std::numbers::pi * i / pairs;
+    low.push_back(turned(Point3{1, 0, 0}, angle));
+    low.push_back(turned(Point3{1, 0, 0}, angle + apart));
+  }
+  TriangleSurface s;
+  const Point3 up{0, 0, 1};
+  for (std::size_t i = 0; i < low.size(); ++i) {
+    const Point3 a = low[i], b = low[(i + 1) % low.size()];
+    add_triangle(s, a, b, b + up);
+    add_triangle(s, a, b + up, a + up);
+    add_triangle(s, up, a + up, b + up);
+    add_triangle(s, {0, 0, 0}, b, a);
+  }
+  return s;
+}
+
+TEST(RepairSurface, CollapsesEdgesFarBelowTheTolerance) {
+  constexpr int kPairs = 7;
+  const auto points_of = [](double apart, Repair repair) {
+    const CleanSurface clean = cleaned(prism_of_close_corners(kPairs, apart), repair, 1e-2);
+    expect_valid(clean);
+    // It is no mend: the shape is the same to within the tolerance.
+    EXPECT_TRUE(clean.repairs.empty());
+    EXPECT_LE(clean.joined, 0.11 * 1e-2 * clean.diameter);
+    EXPECT_NEAR(clean.volume, 0.5 * kPairs * std::sin(2 * std::numbers::pi / kPairs), 1.5 * apart);
+    return clean.surface.points.size();
+  };
+  constexpr std::size_t kOfAll = 4 * kPairs + 2;
+  EXPECT_EQ(points_of(1e-3, Repair::kNone), kOfAll);
+  EXPECT_EQ(points_of(1e-3, Repair::kSafe), kOfAll - 2 * kPairs);
+  EXPECT_EQ(points_of(1e-2, Repair::kSafe), kOfAll);
+}
+
+// A finely divided circle is one of short edges only: no point goes farther than allowed for it.
+TEST(RepairSurface, CollapsesNoChains) {
+  constexpr int kSides = 2500;
+  const CleanSurface clean = cleaned(prism(kSides, 1, 0, 1), Repair::kSafe, 1e-2);
+  expect_valid(clean);
+  EXPECT_GT(clean.joined, 0);
+  EXPECT_NEAR(clean.volume, std::numbers::pi, 2 * std::numbers::pi * clean.joined);
+  for (const Point3& p : clean.surface.points) {
+    const double r = std::hypot(p.x, p.y);
+    EXPECT_TRUE(r < 1e-12 || std::abs(r - 1) < 1e-12);
+  }
+}
+
 TEST(RepairSurface, HeedsCancelling) {
   TriangleSurface surface = box_surface({0, 0, 0}, {1, 1, 1});
   append(surface, box_surface({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));
