@@ -13,8 +13,6 @@ namespace {
 // Weight of a squared distance, in asymmetries, against one more edge. The best edge of an arc that
 // its copies cut in edges of length 1, out of phase, is then 1.07 long: as long as it was.
 constexpr double kDistanceWeight = 0.25;
-// An edge may pass by what it skips at so many asymmetries.
-constexpr double kMostAsymmetries = 2;
 // Vertices of two copies are one if they are nearer than so many asymmetries, and than this share of
 // the shorter edge there: no two of a copy are then taken for one.
 constexpr double kLinkAsymmetries = 2;
@@ -159,7 +157,7 @@ class Fit {
   // Adds what is best between the first and the last, which both stay.
   void choose_between(std::span<const Candidate> line) {
     const double e = result_.asymmetry;
-    const double most = std::min(kMostAsymmetries * e, std::max(request_.tolerance, e));
+    const double most = std::min(request_.most_asymmetries * e, std::max(request_.tolerance, e));
     std::vector<double> cost(line.size(), std::numeric_limits<double>::infinity());
     std::vector<std::size_t> from(line.size(), 0);
     cost[0] = 0;

@@ -30,6 +30,8 @@ struct ChainFitRequest {
   Point2 last;
   double tolerance = 0;   // that no point may be moved by more than
   double resolution = 0;  // below which positions are the same; both in input units
+  // An edge may pass by what it skips at so many times what the copies differ by.
+  double most_asymmetries = 2;
 };
 
 // `copies`: polylines in one frame and direction, with both ends, which need not lie exactly at the

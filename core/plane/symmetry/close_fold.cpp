@@ -165,6 +165,9 @@ class Closer {
     result.centre_detected = !options_.center;
     copy_seeds(result);
     SYMCELL_TRY(check_and_seed(*closed, context_));
+    if (result.symmetry_error_rel > kExactSymmetryToleranceRel) {
+      result.shape_tolerance_rel = request.tolerance / prepared_.diameter;
+    }
     return std::move(result);
   }
 

@@ -32,6 +32,7 @@ constexpr std::int32_t kAlwaysTried = 12;  // folds that need no circle of verti
 // Turns by which a fold is looked at first, as shares of the full turn: far from each other and from
 // the small ones, which move nothing far.
 constexpr double kFirstTurns[] = {0.382, 0.5, 0.276, 0.146};
+constexpr std::size_t kFirstSamples[] = {4, 32, 256, kMaxSamples};
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -166,6 +167,15 @@ void FoldDetector::keep_discriminating_samples() {
   samples_ = std::move(kept);
 }
 
+// Whether an edge has the kind that another has which is turned to run `along`.
+bool FoldDetector::alike(std::int32_t id, const PreparedEdge& edge, Point2 along) const {
+  const PreparedEdge& other = prepared_.edges[at(id)];
+  if (other.marker != edge.marker && !prepared_.ignore_markers) return false;
+  const Point2 w = prepared_.points[at(other.b)] - prepared_.points[at(other.a)];
+  return dot(along, w) >= 0 ? other.left == edge.left && other.right == edge.right
+                            : other.left == edge.right && other.right == edge.left;
+}
+
 // Distance of the image from the nearest entity of the sample's kind, up to `reach`; else infinity.
 double FoldDetector::miss(
     const Sample& sample, Point2 image, double cosine, double sine, double reach) const {
@@ -174,28 +184,51 @@ double FoldDetector::miss(
   const PreparedEdge& edge = prepared_.edges[at(sample.edge)];
   const Point2 u = prepared_.points[at(edge.b)] - prepared_.points[at(edge.a)];
   const Point2 along{cosine * u.x - sine * u.y, sine * u.x + cosine * u.y};
-  const auto alike = [&](std::int32_t id) {
-    const PreparedEdge& other = prepared_.edges[at(id)];
-    if (other.marker != edge.marker && !prepared_.ignore_markers) return false;
-    const Point2 w = prepared_.points[at(other.b)] - prepared_.points[at(other.a)];
-    return dot(along, w) >= 0 ? other.left == edge.left && other.right == edge.right
-                              : other.left == edge.right && other.right == edge.left;
-  };
-  return index_.nearest(image, reach, alike).distance;
+  return index_.nearest(image, reach, [&](std::int32_t id) { return alike(id, edge, along); })
+      .distance;
 }
 
-// The samples are looked at in the given order, and one that misses comes first from then on: it
-// will tell most other folds, too.
-bool FoldDetector::fits_turn(double angle, double reach, std::vector<std::int32_t>& order) const {
+// Whether `miss` is within the reach, which is much faster to tell where that is large.
+bool FoldDetector::fits(
+    const Sample& sample, Point2 image, double cosine, double sine, double reach) const {
+  const auto any = [](std::int32_t) { return true; };
+  if (sample.isolated) return isolated_.any_within(image, reach, any);
+  if (sample.edge < 0) return index_.any_within(image, reach, any);
+  const PreparedEdge& edge = prepared_.edges[at(sample.edge)];
+  const Point2 u = prepared_.points[at(edge.b)] - prepared_.points[at(edge.a)];
+  const Point2 along{cosine * u.x - sine * u.y, sine * u.x + cosine * u.y};
+  return index_.any_within(image, reach,
+                           [&](std::int32_t id) { return alike(id, edge, along); });
+}
+
+// The first samples in the given order; one that misses moves to the front from then on: it will
+// tell most other folds, too.
+bool FoldDetector::fits_turn(double angle,
+                             double reach,
+                             std::size_t samples,
+                             std::vector<std::int32_t>& order) const {
   const double cosine = std::cos(angle);
   const double sine = std::sin(angle);
-  for (std::size_t i = 0; i < order.size(); ++i) {
+  for (std::size_t i = 0; i < std::min(samples, order.size()); ++i) {
     const Sample& s = samples_[at(order[i])];
-    if (miss(s, turn(s.point, centre_, cosine, sine), cosine, sine, reach) <= reach) continue;
+    if (fits(s, turn(s.point, centre_, cosine, sine), cosine, sine, reach)) continue;
     std::swap(order[i], order[i / 2]);
     return false;
   }
   return true;
+}
+
+// Few samples under all turns, then more.
+bool FoldDetector::passes_first_look(std::int32_t fold,
+                                     double reach,
+                                     std::vector<std::int32_t>& order) const {
+  for (const std::size_t samples : kFirstSamples) {
+    for (const double share : kFirstTurns) {
+      const double k = std::max(1.0, std::round(share * fold));
+      if (!fits_turn(2 * std::numbers::pi * k / fold, reach, samples, order)) return false;
+    }
+  }
+  return fits_turn(2 * std::numbers::pi / fold, reach, kMaxSamples, order);
 }
 
 // The largest miss under angles that no fold has, or one above `enough`.
@@ -239,11 +272,7 @@ Result<std::vector<std::int32_t>> FoldDetector::candidates(double arbitrary,
     if (nearly_round && n > kAlwaysTried && !divides_a_class(n)) {
       allowed = std::min(allowed, 1.5 * outstanding);
     }
-    const bool fits = std::all_of(std::begin(kFirstTurns), std::end(kFirstTurns), [&](double share) {
-      const double k = std::max(1.0, std::round(share * n));
-      return fits_turn(2 * std::numbers::pi * k / n, allowed, order);
-    });
-    if (fits && fits_turn(2 * std::numbers::pi / n, allowed, order)) result.push_back(n);
+    if (passes_first_look(n, allowed, order)) result.push_back(n);
   }
   return result;
 }

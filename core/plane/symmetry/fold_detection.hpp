@@ -64,8 +64,17 @@ class FoldDetector {
   void keep_discriminating_samples();
   [[nodiscard]] double miss(
       const Sample& sample, Point2 image, double cosine, double sine, double reach) const;
+  [[nodiscard]] bool fits(
+      const Sample& sample, Point2 image, double cosine, double sine, double reach) const;
+  [[nodiscard]] bool alike(std::int32_t id, const PreparedEdge& edge, Point2 along) const;
   [[nodiscard]] double arbitrary_angle_error(double enough) const;
-  [[nodiscard]] bool fits_turn(double angle, double reach, std::vector<std::int32_t>& order) const;
+  [[nodiscard]] bool fits_turn(double angle,
+                               double reach,
+                               std::size_t samples,
+                               std::vector<std::int32_t>& order) const;
+  [[nodiscard]] bool passes_first_look(std::int32_t fold,
+                                       double reach,
+                                       std::vector<std::int32_t>& order) const;
   [[nodiscard]] Result<std::vector<std::int32_t>> candidates(double arbitrary,
                                                              double reach,
                                                              ExecutionContext& context) const;

@@ -17,6 +17,9 @@ namespace {
 
 // A vertex is the centre if it is nearer to it than this share of its shortest edge.
 constexpr double kCentreShare = 0.25;
+// Polylines are made finer, if they are off by more than the tolerance, until they pass what they skip
+// at less than so many asymmetries.
+constexpr double kFewestAsymmetries = 0.25;
 // Where a loop is cut, other copies' vertices count as those of the first within so many times what
 // the copies differ by, and this share of the shorter edge.
 constexpr double kLinkAsymmetries = 2;
@@ -249,22 +252,31 @@ class Outline {
     }
     ChainFitRequest request{position(from), position(to), request_.tolerance,
                             prepared_.resolution()};
-    const auto fitted = fit_chain(lines_, request, context_);
-    if (!fitted) return error_of(fitted);
+    std::vector<Point2> line;
+    auto fitted = fit_chain(lines_, request, context_);
+    for (;; fitted = fit_chain(lines_, request, context_)) {
+      if (!fitted) return error_of(fitted);
+      line.assign(1, request.first);
+      line.insert(line.end(), fitted->points.begin(), fitted->points.end());
+      line.push_back(request.last);
+      const auto error = compare(line);
+      if (!error) return error_of(error);
+      if (*error <= request_.tolerance) {
+        note_error(*error, chain.points.front());
+        break;
+      }
+      // Finer, down to all vertices of the copies.
+      if (request.most_asymmetries < kFewestAsymmetries) return runs_apart(copies.front());
+      request.most_asymmetries /= 2;
+    }
     for (std::size_t k = 0; k < fitted->shifts.size(); ++k) {
       shift_ = shift_ + rotations_.rotate(fitted->shifts[k], static_cast<std::int32_t>(k));
     }
     shifted_ += fitted->shared * at(fold());
 
     std::vector<OrbitVertex> vertices{from};
-    std::vector<Point2> line{request.first};
-    for (const Point2 p : fitted->points) {
-      vertices.push_back({add_orbit(p), 0});
-      line.push_back(p);
-    }
+    for (const Point2 p : fitted->points) vertices.push_back({add_orbit(p), 0});
     vertices.push_back(to);
-    line.push_back(request.last);
-    SYMCELL_TRY(compare(line, chain));
     for (std::int32_t k = 0; k < fold(); ++k) {
       const ChainCopy& copy = copies[copies.size() == 1 ? 0 : at(k)];
       const PreparedEdge kind = kind_of(copy);
@@ -386,7 +398,7 @@ class Outline {
   }
 
   // Both ways, between the polyline taken and all copies.
-  Result<void> compare(const std::vector<Point2>& line, const Chain& chain) {
+  Result<double> compare(const std::vector<Point2>& line) {
     const SegmentIndex taken(segments_of(line));
     double error = 0;
     for (const std::vector<Point2>& copy : lines_) {
@@ -401,9 +413,7 @@ class Outline {
             error, outline_distance(given, line[i], line[i + 1], prepared_.resolution()));
       }
     }
-    note_error(error, chain.points.front());
-    if (error <= request_.tolerance) return {};
-    return runs_apart({static_cast<std::int32_t>(&chain - chains_->chains.data()), false});
+    return error;
   }
 
   static constexpr double kFar = std::numeric_limits<double>::infinity();

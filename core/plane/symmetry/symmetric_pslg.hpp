@@ -46,8 +46,8 @@ struct SymmetricPslg {
   bool fold_detected = false;
   std::int32_t geometry_fold = 1;  // likewise with markers and region attributes set aside
   bool centre_detected = false;
-  // Not 0 where vertices of the input need not be vertices here: the share of the diameter to which
-  // its segments keep their places.
+  // Not 0 where vertices of the input need not be vertices here, or are moved by more than the usual
+  // tolerance: the share of the diameter to which its segments keep their places.
   double shape_tolerance_rel = 0;
   std::vector<Warning> warnings;  // of the choice of fold
 

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <numbers>
 
+#include "core/geometry/rotation.hpp"
 #include "core/plane/input/validate_pslg.hpp"
 #include "core/plane/symmetry/symmetrise.hpp"
 #include "tests/support/pslg_builders.hpp"
@@ -76,7 +77,6 @@ TEST(Shape, VerticesAreKeptOnRequest) {
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_EQ(found->fold, 6);
   EXPECT_GT(vertices_of(*found), 2 * pslg.vertices.size());
-  EXPECT_EQ(found->shape_tolerance_rel, 0);
 }
 
 TEST(Shape, NoTwoVerticesComeNearerThanOneSectorAsks) {
