@@ -77,8 +77,9 @@ Warning markers_break_symmetry_warning(std::int32_t taken,
                                        std::int32_t geometry,
                                        const std::string& where) {
   return {WarningCode::kMarkersBreakSymmetry,
-          "the geometry has fold " + std::to_string(geometry) + ", markers and region attributes only " +
-              std::to_string(taken) + (where.empty() ? "" : ": " + where),
+          "the geometry has fold " + std::to_string(geometry) +
+              ", markers and region attributes only " + std::to_string(taken) +
+              (where.empty() ? "" : ": " + where),
           "give ignore_markers=true for fold " + std::to_string(geometry) + ", or " +
               fold_text(taken) + " if " + std::to_string(taken) + " is meant"};
 }

@@ -90,8 +90,8 @@ class Maker {
     std::vector<Point2> points;
     for (std::int32_t i = 0; i < count; ++i) {
       const double t = first + kTurn * i / count;
-      points.push_back(
-          polar(1 + height * std::sin(fold() * t + 1) + 0.3 * height * std::sin(2 * fold() * t), t));
+      points.push_back(polar(
+          1 + height * std::sin(fold() * t + 1) + 0.3 * height * std::sin(2 * fold() * t), t));
     }
     add(points);
     const double step = kTurn / a_sector;
@@ -170,8 +170,8 @@ class Maker {
     std::vector<Point2> corners, points;
     for (std::int32_t i = 0; i < count; ++i) {
       const double t = kTurn * i / count;
-      corners.push_back(polar(
-          1 + height * std::sin(fold() * t) + 0.2 * height * std::cos(2 * fold() * t), t));
+      corners.push_back(
+          polar(1 + height * std::sin(fold() * t) + 0.2 * height * std::cos(2 * fold() * t), t));
     }
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const Point2 a = corners[i], b = corners[(i + 1) % corners.size()];

@@ -94,8 +94,8 @@ class Fit {
 
   // Makes one of the vertices, of different copies, that stand together.
   void join() {
-    const double link =
-        std::min(kLinkAsymmetries * result_.asymmetry, std::max(request_.tolerance, request_.resolution));
+    const double link = std::min(kLinkAsymmetries * result_.asymmetry,
+                                 std::max(request_.tolerance, request_.resolution));
     result_.shifts.assign(copies_.size(), {});
     std::vector<Candidate> joined;
     std::vector<std::size_t> seen(copies_.size(), 0);  // the group that a copy was last in, from 1
@@ -166,8 +166,8 @@ class Fit {
       for (std::size_t i = j; i-- > first;) {
         double off = 0;
         for (std::size_t m = i + 1; m < j; ++m) {
-          off = std::max(off, squared_distance_to_segment(line[m].point, line[i].point,
-                                                          line[j].point));
+          off = std::max(off,
+                         squared_distance_to_segment(line[m].point, line[i].point, line[j].point));
         }
         if (off > 16 * most * most) break;  // farther back it hardly gets better
         if (off > most * most) continue;

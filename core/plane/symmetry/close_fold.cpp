@@ -63,8 +63,9 @@ class Closer {
   Result<SymmetricPslg> with_permuted_vertices() {
     const double finest = finest_link();
     for (double link = finest;; link = std::min(kLinkGrowth * link, 2 * tolerance_)) {
-      auto result = closed(
-          {request_.fold, request_.centre, link, std::max(tolerance_, finest), false}, close_orbits);
+      auto result =
+          closed({request_.fold, request_.centre, link, std::max(tolerance_, finest), false},
+                 close_orbits);
       if (result && all_of(*result) < prepared_.points.size()) {
         result = fail(ErrorCode::kNotSymmetric, "vertices that are not copies of each other merge");
       }
@@ -94,7 +95,8 @@ class Closer {
     const double finest = finest_link();
     std::optional<SymmetricPslg> best;
     for (double link = finest;; link = std::min(kLinkGrowth * link, 2 * tolerance_)) {
-      auto result = closed({fold, request_.centre, link, std::max(tolerance_, finest), true}, close_orbits);
+      auto result =
+          closed({fold, request_.centre, link, std::max(tolerance_, finest), true}, close_orbits);
       if (result) {
         if (!best || result->orbit_points.size() < best->orbit_points.size()) {
           best = std::move(*result);

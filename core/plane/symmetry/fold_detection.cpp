@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numbers>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "core/cell/inspection.hpp"
 
@@ -32,6 +35,8 @@ constexpr std::int32_t kAlwaysTried = 12;  // folds that need no circle of verti
 // Turns by which a fold is looked at first, as shares of the full turn: far from each other and from
 // the small ones, which move nothing far.
 constexpr double kFirstTurns[] = {0.382, 0.5, 0.276, 0.146};
+// Looks at samples for folds that no circle of vertices suggests: below a tenth of a second.
+constexpr std::int64_t kMostLooks = 60'000;
 constexpr std::size_t kFirstSamples[] = {4, 32, 256, kMaxSamples};
 
 std::size_t at(std::int32_t i) {
@@ -62,9 +67,11 @@ std::vector<std::int32_t> multiples(std::int32_t fold, std::int64_t affordable) 
     std::iota(result.begin(), result.end(), 1);
     return result;
   }
-  for (std::int64_t i = 0; i < affordable; ++i) {
-    result.push_back(
-        static_cast<std::int32_t>(1 + i * (all - 1) / std::max<std::int64_t>(affordable - 1, 1)));
+  // Spread by the golden section, so that the first few are large and far from each other already.
+  for (std::int64_t i = 1; i <= affordable; ++i) {
+    const double share = static_cast<double>(i) * (std::numbers::phi - 1);
+    const double part = share - std::floor(share);
+    result.push_back(static_cast<std::int32_t>(1 + part * static_cast<double>(all - 1)));
   }
   return result;
 }
@@ -81,9 +88,33 @@ FoldDetector::FoldDetector(const PreparedPslg& prepared,
       tolerance_(std::max(tolerance, prepared.resolution())),
       centre_given_(centre != nullptr),
       centre_(centre != nullptr ? *centre : prepared.centroid) {
+  sort_by_kind();
   collect_samples();
   count_radii();
   keep_discriminating_samples();
+}
+
+// One index a kind: a search among edges that do not count would visit all within its reach.
+void FoldDetector::sort_by_kind() {
+  std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t>, std::int32_t> kinds;
+  std::vector<std::vector<std::int32_t>> edges;
+  for (std::size_t e = 0; e < prepared_.edges.size(); ++e) {
+    const PreparedEdge& edge = prepared_.edges[e];
+    const std::int32_t marker = prepared_.ignore_markers ? 0 : edge.marker;
+    const std::tuple key{marker, std::min(edge.left, edge.right), std::max(edge.left, edge.right)};
+    const auto [kind, fresh] = kinds.try_emplace(key, static_cast<std::int32_t>(edges.size()));
+    if (fresh) edges.emplace_back();
+    edges[at(kind->second)].push_back(static_cast<std::int32_t>(e));
+    kind_of_.push_back(kind->second);
+  }
+  for (std::vector<std::int32_t>& of_kind : edges) {
+    std::vector<IndexedSegment> segments;
+    for (const std::int32_t e : of_kind) {
+      segments.push_back({prepared_.points[at(prepared_.edges[at(e)].a)],
+                          prepared_.points[at(prepared_.edges[at(e)].b)]});
+    }
+    kinds_.push_back({std::move(of_kind), SegmentIndex(segments)});
+  }
 }
 
 void FoldDetector::collect_samples() {
@@ -167,10 +198,10 @@ void FoldDetector::keep_discriminating_samples() {
   samples_ = std::move(kept);
 }
 
-// Whether an edge has the kind that another has which is turned to run `along`.
+// Whether an edge of the same kind has the faces on the sides where another has them that is turned
+// to run `along`.
 bool FoldDetector::alike(std::int32_t id, const PreparedEdge& edge, Point2 along) const {
   const PreparedEdge& other = prepared_.edges[at(id)];
-  if (other.marker != edge.marker && !prepared_.ignore_markers) return false;
   const Point2 w = prepared_.points[at(other.b)] - prepared_.points[at(other.a)];
   return dot(along, w) >= 0 ? other.left == edge.left && other.right == edge.right
                             : other.left == edge.right && other.right == edge.left;
@@ -184,8 +215,9 @@ double FoldDetector::miss(
   const PreparedEdge& edge = prepared_.edges[at(sample.edge)];
   const Point2 u = prepared_.points[at(edge.b)] - prepared_.points[at(edge.a)];
   const Point2 along{cosine * u.x - sine * u.y, sine * u.x + cosine * u.y};
-  return index_.nearest(image, reach, [&](std::int32_t id) { return alike(id, edge, along); })
-      .distance;
+  const Kind& kind = kinds_[at(kind_of_[at(sample.edge)])];
+  const auto same = [&](std::int32_t id) { return alike(kind.edges[at(id)], edge, along); };
+  return kind.index.nearest(image, reach, same).distance;
 }
 
 // Whether `miss` is within the reach, which is much faster to tell where that is large.
@@ -197,8 +229,9 @@ bool FoldDetector::fits(
   const PreparedEdge& edge = prepared_.edges[at(sample.edge)];
   const Point2 u = prepared_.points[at(edge.b)] - prepared_.points[at(edge.a)];
   const Point2 along{cosine * u.x - sine * u.y, sine * u.x + cosine * u.y};
-  return index_.any_within(image, reach,
-                           [&](std::int32_t id) { return alike(id, edge, along); });
+  const Kind& kind = kinds_[at(kind_of_[at(sample.edge)])];
+  const auto same = [&](std::int32_t id) { return alike(kind.edges[at(id)], edge, along); };
+  return kind.index.any_within(image, reach, same);
 }
 
 // The first samples in the given order; one that misses moves to the front from then on: it will
@@ -211,6 +244,7 @@ bool FoldDetector::fits_turn(double angle,
   const double sine = std::sin(angle);
   for (std::size_t i = 0; i < std::min(samples, order.size()); ++i) {
     const Sample& s = samples_[at(order[i])];
+    ++looks_;
     if (fits(s, turn(s.point, centre_, cosine, sine), cosine, sine, reach)) continue;
     std::swap(order[i], order[i / 2]);
     return false;
@@ -264,16 +298,26 @@ Result<std::vector<std::int32_t>> FoldDetector::candidates(double arbitrary,
   std::vector<std::int32_t> order(samples_.size());
   std::iota(order.begin(), order.end(), 0);
   std::vector<std::int32_t> result;
-  for (std::int32_t n = 2; n <= highest; ++n) {
-    if ((n & 0xff) == 0) {
-      SYMCELL_TRY(context.check());
-    }
+  const auto look_at = [&](std::int32_t n, bool suggested) {
     double allowed = (n <= kMostNearFold ? reach : tolerance_) + slack;
-    if (nearly_round && n > kAlwaysTried && !divides_a_class(n)) {
+    if (nearly_round && n > kAlwaysTried && !suggested) {
       allowed = std::min(allowed, 1.5 * outstanding);
     }
     if (passes_first_look(n, allowed, order)) result.push_back(n);
+  };
+  // What the vertices suggest, however long that takes; then all, while there is time.
+  looks_ = 0;
+  for (std::int32_t n = 2; n <= highest; ++n) {
+    if (n <= kAlwaysTried || divides_a_class(n)) look_at(n, true);
   }
+  looks_ = 0;
+  for (std::int32_t n = kAlwaysTried + 1; n <= highest && looks_ < kMostLooks; ++n) {
+    if ((n & 0xff) == 0) {
+      SYMCELL_TRY(context.check());
+    }
+    if (!divides_a_class(n)) look_at(n, false);
+  }
+  std::sort(result.begin(), result.end());
   return result;
 }
 

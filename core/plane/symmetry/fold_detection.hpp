@@ -59,6 +59,13 @@ class FoldDetector {
     std::int64_t searches = 0;  // of the nearest segment
   };
 
+  // Edges with one marker and the same classes of faces on their two sides, whichever is which.
+  struct Kind {
+    std::vector<std::int32_t> edges;  // of the prepared PSLG
+    SegmentIndex index;               // of these
+  };
+
+  void sort_by_kind();
   void collect_samples();
   void count_radii();
   void keep_discriminating_samples();
@@ -91,7 +98,10 @@ class FoldDetector {
   double tolerance_;
   bool centre_given_;
   Point2 centre_;
-  std::vector<Sample> samples_;      // the most selective first
+  std::vector<Kind> kinds_;
+  std::vector<std::int32_t> kind_of_;  // per edge of the prepared PSLG
+  mutable std::int64_t looks_ = 0;     // at samples, by fits_turn; reset by candidates
+  std::vector<Sample> samples_;        // the most selective first
   // Numbers of vertices that share a radius, the fewest, by several notions of sharing.
   std::vector<std::int64_t> class_sizes_;
 };

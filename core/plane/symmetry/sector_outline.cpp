@@ -87,8 +87,8 @@ class Loop {
   }
 
   [[nodiscard]] Place foot(const SegmentIndex& index, Point2 p) const {
-    const auto s = static_cast<std::size_t>(
-        index.nearest(p, std::numeric_limits<double>::infinity()).segment);
+    const auto s =
+        static_cast<std::size_t>(index.nearest(p, std::numeric_limits<double>::infinity()).segment);
     const Point2 u = segments_[s].b - segments_[s].a;
     const double along = std::clamp(dot(p - segments_[s].a, u) / squared_length(u), 0.0, 1.0);
     return {s, along, segments_[s].a + along * u};
@@ -146,9 +146,8 @@ class Outline {
       return fail(ErrorCode::kNotSymmetric, "markers change in places that differ between sectors");
     }
     chains_ = &chains;
-    const auto orbits =
-        find_chain_orbits(prepared_, index_, chains, request_.fold, request_.centre, centre,
-                          2 * request_.tolerance);
+    const auto orbits = find_chain_orbits(prepared_, index_, chains, request_.fold, request_.centre,
+                                          centre, 2 * request_.tolerance);
     if (!orbits) return error_of(orbits);
     add_points(*orbits, centre);
     EdgeOrbits edges(rotations_, result_.pslg.centre_orbit, prepared_.ignore_markers);
@@ -345,8 +344,8 @@ class Outline {
     const SegmentIndex index(loop.segments());
     const std::size_t corner = loop.sharpest();
     const Point2 p = loop.point(corner);
-    const double link = std::min(kLinkAsymmetries * asymmetry_of(loop, index),
-                                 kLinkShare * loop.spacing(corner));
+    const double link =
+        std::min(kLinkAsymmetries * asymmetry_of(loop, index), kLinkShare * loop.spacing(corner));
     Point2 sum = p;
     double count = 1;
     std::vector<Loop::Place> places{{corner, 0, p}};
@@ -405,12 +404,12 @@ class Outline {
       SYMCELL_TRY(context_.check());
       const SegmentIndex given(segments_of(copy));
       for (std::size_t i = 0; i + 1 < copy.size(); ++i) {
-        error = std::max(
-            error, outline_distance(taken, copy[i], copy[i + 1], prepared_.resolution()));
+        error =
+            std::max(error, outline_distance(taken, copy[i], copy[i + 1], prepared_.resolution()));
       }
       for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-        error = std::max(
-            error, outline_distance(given, line[i], line[i + 1], prepared_.resolution()));
+        error =
+            std::max(error, outline_distance(given, line[i], line[i + 1], prepared_.resolution()));
       }
     }
     return error;
@@ -425,8 +424,9 @@ class Outline {
   RotationTable rotations_;
   const Chains* chains_ = nullptr;
   ClosedOrbits result_;
-  std::vector<OrbitVertex> vertex_;         // of junctions and lone vertices, per point
-  std::vector<std::vector<Point2>> lines_;  // copies of the chain at hand, in the frame of the first
+  std::vector<OrbitVertex> vertex_;  // of junctions and lone vertices, per point
+  std::vector<std::vector<Point2>>
+      lines_;  // copies of the chain at hand, in the frame of the first
   Point2 shift_;
   std::size_t shifted_ = 0;
   double error_ = 0;
@@ -441,14 +441,13 @@ Result<ClosedOrbits> outline_sector(const PreparedPslg& prepared,
                                     ExecutionContext& context) {
   // A segment that is its own image under half a turn is cut at the centre.
   const SegmentIndex::Hit through = index.nearest(request.centre, request.tolerance);
-  const auto at_centre = [&](Point2 p) {
-    return distance(p, request.centre) <= request.tolerance;
-  };
+  const auto at_centre = [&](Point2 p) { return distance(p, request.centre) <= request.tolerance; };
   if (request.fold == 2 && through.segment >= 0 &&
       std::none_of(prepared.points.begin(), prepared.points.end(), at_centre)) {
     const PreparedPslg cut = cut_at_centre(prepared, through.segment, request.centre);
     std::vector<IndexedSegment> segments;
-    for (const PreparedEdge& e : cut.edges) segments.push_back({cut.points[at(e.a)], cut.points[at(e.b)]});
+    for (const PreparedEdge& e : cut.edges)
+      segments.push_back({cut.points[at(e.a)], cut.points[at(e.b)]});
     return Outline(cut, SegmentIndex(segments), request, context).run();
   }
   return Outline(prepared, index, request, context).run();

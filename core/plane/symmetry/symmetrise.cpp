@@ -141,12 +141,14 @@ class Symmetriser {
             return fold.tolerance_rel < share * w.near_fold->tolerance_rel;
           });
       if (!of_use) continue;
-      ++tried;
-      const auto closed = close_fold(
-          pslg_, options_, prepared_, index_,
-          {fit->fold, fit->centre, fold.tolerance_rel * prepared_.diameter}, context_);
-      if (!closed && is_limit(closed.error().code)) return error_of(closed);
-      if (!closed) continue;
+      if (is_cheap(fit->fold)) {
+        ++tried;
+        const auto closed =
+            close_fold(pslg_, options_, prepared_, index_,
+                       {fit->fold, fit->centre, fold.tolerance_rel * prepared_.diameter}, context_);
+        if (!closed && is_limit(closed.error().code)) return error_of(closed);
+        if (!closed) continue;
+      }
       result.warnings.push_back(near_symmetry_warning(fold, result.fold, given));
     }
     return {};
@@ -193,8 +195,7 @@ class Symmetriser {
     };
     for (const PreparedEdge& edge : prepared_.edges) {
       const Point2 a = prepared_.points[at(edge.a)], b = prepared_.points[at(edge.b)];
-      const SegmentIndex::Hit hit =
-          index_.nearest(image(a + 0.5 * (b - a)), prepared_.diameter);
+      const SegmentIndex::Hit hit = index_.nearest(image(a + 0.5 * (b - a)), prepared_.diameter);
       if (hit.segment < 0) continue;
       const PreparedEdge& other = prepared_.edges[at(hit.segment)];
       const Point2 u = image(b) - image(a);
@@ -216,6 +217,13 @@ class Symmetriser {
     return {};
   }
 
+  // Whether a fold may be closed only to tell what would come of it: where all else fails, every
+  // sector gets the vertices of all.
+  [[nodiscard]] bool is_cheap(std::int32_t fold) const {
+    constexpr double kMostCopies = 50'000;  // of vertices: tens of milliseconds
+    return static_cast<double>(prepared_.points.size()) * fold <= kMostCopies;
+  }
+
   // What giving each fold would lead to.
   std::vector<FoldFit> completed(std::vector<FoldFit> fits, std::int32_t taken) {
     constexpr int kMostTried = 4;  // each is closed
@@ -224,8 +232,9 @@ class Symmetriser {
       // A divisor of what is symmetric is.
       fit->accepted = taken % fit->fold == 0;
       if (fit->accepted || fit->error > 2 * tolerance_) continue;
-      fit->accepted = ++tried > kMostTried ? fit->kept && fit->error <= tolerance_
-                                           : close(fit->fold, fit->centre).has_value();
+      const bool try_it = is_cheap(fit->fold) && ++tried <= kMostTried;
+      fit->accepted = try_it ? close(fit->fold, fit->centre).has_value()
+                             : fit->kept && fit->error <= tolerance_;
     }
     return fits;
   }
@@ -241,9 +250,9 @@ class Symmetriser {
     const double limit = options_.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel);
     const std::string name = std::to_string(fold) + "-fold symmetric";
     if (auto only = broken_by_attributes(fold, name)) return fail(std::move(*only));
-    std::string message = "the model is not " + name + " about " +
-                          describe_point(fit.centre) + " within the tolerance of " +
-                          describe_rounded(limit) + " of its diameter: ";
+    std::string message = "the model is not " + name + " about " + describe_point(fit.centre) +
+                          " within the tolerance of " + describe_rounded(limit) +
+                          " of its diameter: ";
     Error error = result.error();
     // An infinite error means that only kinds differ; the closure names them.
     if (fit.error > tolerance_ && std::isfinite(fit.error) && fit.worst_point >= 0) {
@@ -270,12 +279,11 @@ class Symmetriser {
     if (!closed) return std::nullopt;
     Difference difference = broken_attributes(fold, closed->centre);
     if (difference.segments.empty()) return std::nullopt;
-    return Error{ErrorCode::kNotSymmetric,
-                 "the geometry is " + name + ", markers and region attributes are not: " +
-                     difference.text +
-                     "; give ignore_markers=true to set markers and attributes aside, or correct them",
-                 difference.segments,
-                 "/segments/" + std::to_string(difference.segments.front())};
+    return Error{
+        ErrorCode::kNotSymmetric,
+        "the geometry is " + name + ", markers and region attributes are not: " + difference.text +
+            "; give ignore_markers=true to set markers and attributes aside, or correct them",
+        difference.segments, "/segments/" + std::to_string(difference.segments.front())};
   }
 
   Result<SymmetricPslg> close(std::int32_t fold, Point2 centre) {

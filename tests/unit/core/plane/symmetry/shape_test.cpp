@@ -126,8 +126,8 @@ Pslg magnets() {
   Pslg pslg = builder.pslg();
   pslg.holes.push_back({0, 0});
   for (std::int32_t k = 0; k < 4; ++k) {
-    pslg.regions.push_back({builder.turned({1, 0.9}, k), k % 2 + 1,
-                            std::numeric_limits<double>::infinity()});
+    pslg.regions.push_back(
+        {builder.turned({1, 0.9}, k), k % 2 + 1, std::numeric_limits<double>::infinity()});
   }
   return pslg;
 }
@@ -157,8 +157,8 @@ TEST(Shape, DetectionIsFastAtAnyTolerance) {
   std::vector<Point2> rim;
   for (int i = 0; i < 2000; ++i) {
     const double t = 2 * std::numbers::pi * i / 2000;
-    rim.push_back({(1 + 0.05 * std::sin(7 * t)) * std::cos(t),
-                   (1 + 0.05 * std::sin(7 * t)) * std::sin(t)});
+    rim.push_back(
+        {(1 + 0.05 * std::sin(7 * t)) * std::cos(t), (1 + 0.05 * std::sin(7 * t)) * std::sin(t)});
   }
   add_loop(pslg, rim, 0);
   add_loop(pslg, polygon(1000, 0.5, 0.1, {}), 0);
