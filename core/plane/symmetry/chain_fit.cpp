@@ -18,9 +18,9 @@ constexpr double kDistanceWeight = 0.25;
 constexpr double kLinkAsymmetries = 2;
 constexpr double kLinkShare = 0.3;
 // Vertices are chosen from so many copies: more would only make the choice finer than an eighth of
-// an edge. And an edge skips at most so many of them; both bound the time.
+// an edge. And an edge skips at most so many of them. Both bound the time.
 constexpr std::size_t kMostSources = 8;
-constexpr std::size_t kMostSkipped = 400;
+constexpr std::size_t kMostSkipped = 150;
 // How far ahead the next place is looked for: a line may be longer than its chord, in turns finer
 // than the reach.
 constexpr double kWindowLengths = 2;
