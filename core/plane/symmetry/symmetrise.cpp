@@ -226,7 +226,7 @@ class Symmetriser {
 
   // What giving each fold would lead to.
   std::vector<FoldFit> completed(std::vector<FoldFit> fits, std::int32_t taken) {
-    constexpr int kMostTried = 4;  // each is closed
+    constexpr int kMostTried = 12;  // each is closed
     int tried = 0;
     for (auto fit = fits.rbegin(); fit != fits.rend(); ++fit) {
       // A divisor of what is symmetric is.
