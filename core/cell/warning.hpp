@@ -16,13 +16,13 @@ namespace symcell {
 struct ExemptCount;
 
 enum class WarningCode : std::uint8_t {
-  kNearSymmetry,     // a larger fold fits only just not
-  kNoSymmetryFound,  // detection gave fold 1
-  kFoldNotLargest,   // detection gave less than the largest fold that fits
-  kAxisAmbiguous,    // other axes have the same fold
-  kSurfaceRepaired,  // the surface was mended before
+  kNearSymmetry,          // a larger fold fits only just not
+  kNoSymmetryFound,       // detection gave fold 1
+  kFoldNotLargest,        // detection gave less than the largest fold that fits
+  kAxisAmbiguous,         // other axes have the same fold
+  kSurfaceRepaired,       // the surface was mended before
   kMarkersBreakSymmetry,  // the geometry alone has a larger fold
-  kExemptElements,   // many elements break a bound that the input forces them to
+  kExemptElements,        // many elements break a bound that the input forces them to
 };
 
 // The stable spelling used in JSON and logs.
