@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <limits>
 
@@ -56,7 +57,9 @@ struct Header {
 };
 
 Header header_of(const SymmetryCellMesh& m) {
-  Header h{{m.dimension, m.order, m.fold, m.nodes_per_element, m.nodes_per_facet, 0}, {}};
+  Header h{{m.dimension, m.order, m.fold, m.nodes_per_element, m.nodes_per_facet,
+            std::bit_cast<std::int32_t>(m.shape_tolerance_rel)},
+           {}};
   h.real = {m.axis_origin.x,    m.axis_origin.y,    m.axis_origin.z,
             m.axis_direction.x, m.axis_direction.y, m.axis_direction.z};
   std::ranges::copy(m.frame, h.real.begin() + 6);
@@ -69,6 +72,7 @@ void apply(const Header& h, SymmetryCellMesh& m) {
   m.fold = h.whole[2];
   m.nodes_per_element = h.whole[3];
   m.nodes_per_facet = h.whole[4];
+  m.shape_tolerance_rel = std::bit_cast<float>(h.whole[5]);
   m.axis_origin = {h.real[0], h.real[1], h.real[2]};
   m.axis_direction = {h.real[3], h.real[4], h.real[5]};
   std::copy(h.real.begin() + 6, h.real.end(), m.frame.begin());

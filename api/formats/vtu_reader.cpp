@@ -79,6 +79,11 @@ class VtuReader {
       if (!values) return missing(values.error(), std::string("FieldData ") + name);
       *target = {(*values)[0], (*values)[1], (*values)[2]};
     }
+    if (const auto array = find_array(group, "shape_tolerance")) {
+      const auto value = arrays_.reals(array, 1);
+      if (!value) return error_of(value);
+      mesh_.shape_tolerance_rel = value->front();
+    }
     return {};
   }
 

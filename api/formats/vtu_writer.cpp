@@ -66,6 +66,11 @@ Layout lay_out(MeshStream& mesh) {
   arrays.push_back(int32_array("fold", 1, [&cell](VtuValues& out) { out.put(cell.fold); }));
   arrays.push_back(vector_array("axis_origin", cell.axis_origin));
   arrays.push_back(vector_array("axis_direction", cell.axis_direction));
+  if (cell.shape_tolerance_rel > 0) {
+    arrays.push_back(array_of<double>("shape_tolerance", "Float64", 1, 1, [&cell](VtuValues& out) {
+      out.put(double{cell.shape_tolerance_rel});
+    }));
+  }
   layout.point_data = arrays.size();
   if (!mesh.full()) {
     arrays.push_back(

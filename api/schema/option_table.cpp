@@ -363,6 +363,10 @@ constexpr auto kRows = std::to_array<OptionRow>({
     flag_row<&MeshOptions::ignore_markers>(
         {"ignore_markers", "", "", "markers and region attributes take no part in the symmetry",
          kAll}),
+    flag_row<&MeshOptions::keep_vertices>(
+        {"keep_vertices", "", "",
+         "every vertex is a node and so are its images, also where only the shape is symmetric",
+         kPlanar}),
     {{"center", "X,Y", "detected", "planar: centre of the symmetry, in model units", kPlanar},
      set_center,
      get_center},

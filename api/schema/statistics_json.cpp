@@ -64,6 +64,7 @@ Json inspected(const PslgInspection& inspection) {
   json["type"] = "pslg";
   json["dimension"] = 2;
   json["fold"] = inspection.fold;
+  json["geometry_fold"] = inspection.geometry_fold;
   json["axis"] = axis_to_json({inspection.centre.x, inspection.centre.y, 0}, {0, 0, 1});
   json["symmetry_error"] = number(inspection.symmetry_error_rel);
   json["watertight"] = nullptr;  // of solids

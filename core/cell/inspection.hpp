@@ -30,6 +30,7 @@ struct FoldCandidate {
 
 struct PslgInspection {
   std::int32_t fold = 1;
+  std::int32_t geometry_fold = 1;  // with markers and region attributes set aside
   Point2 centre;
   double symmetry_error_rel = 0;
   double area = 0;  // of the meshed domain

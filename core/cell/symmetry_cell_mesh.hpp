@@ -29,6 +29,9 @@ struct SymmetryCellMesh {
   std::int32_t dimension = 2;
   std::int32_t order = 1;
   std::int32_t fold = 1;
+  // Planar: not 0 where the mesh follows the model's segments to within this share of its diameter
+  // but need not have its vertices; the checker holds it to that.
+  float shape_tolerance_rel = 0;
 
   // Frame of the axis: orbit_points are relative to `axis_origin` in the orthonormal frame whose
   // third column is `axis_direction`; 2D uses the identity.

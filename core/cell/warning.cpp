@@ -32,6 +32,7 @@ std::string_view warning_code_name(WarningCode code) {
     case WarningCode::kFoldNotLargest: return "fold_not_largest";
     case WarningCode::kAxisAmbiguous: return "axis_ambiguous";
     case WarningCode::kSurfaceRepaired: return "surface_repaired";
+    case WarningCode::kMarkersBreakSymmetry: return "markers_break_symmetry";
     case WarningCode::kExemptElements: return "exempt_elements";
   }
   return "unknown";
@@ -70,6 +71,17 @@ Warning no_symmetry_warning(double tolerance_rel) {
               " of the diameter: the cell is the whole model",
           "give the fold that is meant, to be told where the model breaks it, or a larger "
           "symmetry_tolerance; give fold=1 if none is meant"};
+}
+
+Warning markers_break_symmetry_warning(std::int32_t taken,
+                                       std::int32_t geometry,
+                                       const std::string& where) {
+  return {WarningCode::kMarkersBreakSymmetry,
+          "the geometry has fold " + std::to_string(geometry) +
+              ", markers and region attributes only " + std::to_string(taken) +
+              (where.empty() ? "" : ": " + where),
+          "give ignore_markers=true for fold " + std::to_string(geometry) + ", or " +
+              fold_text(taken) + " if " + std::to_string(taken) + " is meant"};
 }
 
 Warning fold_not_largest_warning(std::int32_t taken, std::int32_t largest, const std::string& why) {

@@ -16,12 +16,13 @@ namespace symcell {
 struct ExemptCount;
 
 enum class WarningCode : std::uint8_t {
-  kNearSymmetry,     // a larger fold fits only just not
-  kNoSymmetryFound,  // detection gave fold 1
-  kFoldNotLargest,   // detection gave less than the largest fold that fits
-  kAxisAmbiguous,    // other axes have the same fold
-  kSurfaceRepaired,  // the surface was mended before
-  kExemptElements,   // many elements break a bound that the input forces them to
+  kNearSymmetry,          // a larger fold fits only just not
+  kNoSymmetryFound,       // detection gave fold 1
+  kFoldNotLargest,        // detection gave less than the largest fold that fits
+  kAxisAmbiguous,         // other axes have the same fold
+  kSurfaceRepaired,       // the surface was mended before
+  kMarkersBreakSymmetry,  // the geometry alone has a larger fold
+  kExemptElements,        // many elements break a bound that the input forces them to
 };
 
 // The stable spelling used in JSON and logs.
@@ -49,6 +50,11 @@ struct Warning {
                                             std::int32_t taken,
                                             double tolerance_rel);
 [[nodiscard]] Warning no_symmetry_warning(double tolerance_rel);
+// `geometry`: the fold with markers and region attributes set aside.  `where`: what differs, in words
+// that follow a colon.
+[[nodiscard]] Warning markers_break_symmetry_warning(std::int32_t taken,
+                                                     std::int32_t geometry,
+                                                     const std::string& where);
 // `why`: the reason to take less than `largest`, in words that follow "because".
 [[nodiscard]] Warning fold_not_largest_warning(std::int32_t taken,
                                                std::int32_t largest,

@@ -47,6 +47,19 @@ class SegmentIndex {
     return nearest(p, radius, [](std::int32_t) { return true; });
   }
 
+  // Whether a segment that `accept(id)` allows is no farther than `radius`.
+  template <class Accept>
+  [[nodiscard]] bool any_within(Point2 p, double radius, Accept accept) const {
+    bool found = false;
+    double limit = radius * radius;
+    visit(p, limit, [&](std::int32_t id, double squared) {
+      if (squared > limit || !accept(id)) return;
+      found = true;
+      limit = -1;  // nothing is as near
+    });
+    return found;
+  }
+
   // Calls `found(id, distance)` for every segment no farther than `radius`.
   template <class Found>
   void within(Point2 p, double radius, Found found) const {

@@ -31,6 +31,7 @@ struct MeshOptions {
   bool largest_fold =
       false;  // of solids whose fold is detected: not the one with the smallest cell
   bool ignore_markers = false;        // markers and region attributes take no part in the symmetry
+  bool keep_vertices = false;         // planar: every vertex is a node, and so are its images
   std::optional<Point2> center;       // planar; nullopt: detect
   std::optional<Point3> axis_origin;  // solids; nullopt: detect
   std::optional<Point3> axis_direction;  // solids; nullopt: detect; not the zero vector

@@ -19,6 +19,7 @@ namespace symcell::internal {
 struct PlanarModel {
   const Pslg* pslg = nullptr;
   plane::Subdomains subdomains;
+  bool by_shape = false;  // its vertices need not be nodes: outlines are compared
 
   // Whether the domain is on a side of the map's piece.
   [[nodiscard]] bool meshed_beside(std::size_t piece) const {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#include "core/geometry/outline_distance.hpp"
 #include "core/geometry/point_tree.hpp"
+#include "core/geometry/segment_index.hpp"
 #include "core/verify/against_model.hpp"
 
 namespace symcell::internal {
@@ -24,8 +26,12 @@ class PlanarChecker {
 
   std::vector<char> run() {
     match_vertices();
-    cover_pieces();
-    check_boundary();
+    if (given_.by_shape) {
+      compare_outlines();
+    } else {
+      cover_pieces();
+      check_boundary();
+    }
     std::vector<char> constrained(on_.size());
     std::ranges::transform(on_, constrained.begin(),
                            [](On on) { return static_cast<char>(on != On::kNothing); });
@@ -44,7 +50,7 @@ class PlanarChecker {
     node_of_.assign(needed.size(), -1);
     Flaws flaws;
     for (std::size_t v = 0; v < needed.size(); ++v) {
-      if (needed[v] == 0) continue;
+      if (needed[v] == 0 || (given_.by_shape && model_.map.vertex_face[v] < 0)) continue;
       const Point2 p = pslg_.vertices[v];
       const auto hit = tree.nearest({p.x, p.y, 0});
       if (hit.distance <= tolerance_) {
@@ -107,6 +113,66 @@ class PlanarChecker {
     }
     outside.report(checks_, "model.boundary");
     inside.report(checks_, "model.boundary_complete");
+  }
+
+  // Both ways: the mesh's boundary against the domain's, then what lies inside. There an edge counts
+  // as one of a segment if it runs along one.
+  void compare_outlines() {
+    std::vector<IndexedSegment> rim, inner;
+    const plane::PlanarMap& map = model_.map;
+    for (std::size_t p = 0; p < map.pieces.size(); ++p) {
+      const auto half_edge = static_cast<std::int32_t>(2 * p);
+      if (!given_.meshed_beside(p)) continue;
+      const IndexedSegment piece{pslg_.vertices[static_cast<std::size_t>(map.pieces[p].a)],
+                                 pslg_.vertices[static_cast<std::size_t>(map.pieces[p].b)]};
+      (meshed(half_edge) == meshed(half_edge + 1) ? inner : rim).push_back(piece);
+    }
+    const SegmentIndex rim_index(rim), inner_index(inner);
+    std::vector<IndexedSegment> boundary, along;
+    Flaws outside;
+    for (std::size_t g = 0; g < full_.group_count(); ++g) {
+      const IndexedSegment edge{place(full_.first(g).nodes[0]), place(full_.first(g).nodes[1])};
+      if (full_.sides(g) != 1) {
+        if (inner.empty() || !follows(edge, inner_index)) continue;
+        on_[g] = On::kConstraint;
+        along.push_back(edge);
+        continue;
+      }
+      boundary.push_back(edge);
+      on_[g] = On::kBoundary;
+      if (follows(edge, rim_index)) continue;
+      outside.note([&] {
+        return "boundary " + facet_name(full_.first(g).nodes) +
+               " of the mesh is off what bounds the domain";
+      });
+    }
+    Flaws uncovered;
+    check_cover(rim, SegmentIndex(boundary), uncovered);
+    check_cover(inner, SegmentIndex(along), uncovered);
+    uncovered.report(checks_, "model.segments");
+    outside.report(checks_, "model.boundary");
+  }
+
+  void check_cover(const std::vector<IndexedSegment>& pieces,
+                   const SegmentIndex& edges,
+                   Flaws& flaws) const {
+    for (const IndexedSegment& piece : pieces) {
+      if (follows(piece, edges)) continue;
+      flaws.note([&] {
+        return "the model's segment from (" + shown(piece.a.x) + ", " + shown(piece.a.y) +
+               ") is farther than " + shown(tolerance_) + " from the mesh's edges";
+      });
+    }
+  }
+
+  [[nodiscard]] Point2 place(std::int32_t node) const {
+    return planar(full_.mesh.points[static_cast<std::size_t>(node)]);
+  }
+
+  [[nodiscard]] bool follows(const IndexedSegment& piece, const SegmentIndex& index) const {
+    constexpr double kResolution = 1e-3;  // of the tolerance, by which a distance may be under
+    if (index.nearest(piece.a, tolerance_).segment < 0) return false;
+    return outline_distance(index, piece.a, piece.b, kResolution * tolerance_) <= tolerance_;
   }
 
   void check_seeds(const std::vector<char>& constrained) {

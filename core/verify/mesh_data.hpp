@@ -13,6 +13,7 @@ struct MeshData {
   std::int32_t dimension = 2;
   std::int32_t order = 1;
   std::int32_t fold = 1;
+  double shape_tolerance_rel = 0;  // as in SymmetryCellMesh
   Point3 axis_origin;
   Point3 axis_direction{0, 0, 1};
 

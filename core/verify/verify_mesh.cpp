@@ -25,6 +25,8 @@ constexpr double kAsymmetries = 4;
 // Rounding of a sum over all elements, and what a tessellation may differ by, as shares.
 constexpr double kExactMeasureRel = 1e-9;
 constexpr double kSurfaceMeasureRel = 1e-2;
+// The largest symmetry tolerance there is: no mesh may say that it was made with a larger one.
+constexpr double kMostShapeToleranceRel = 0.1;
 // Units in the last place, of the largest coordinate, that nodes of a correct mesh may be off by.
 constexpr double kRoundings = 16;
 // The same of what is one but written twice, as by two rotations that take it to one place. A quarter
@@ -125,6 +127,8 @@ class Verifier {
     }
     if (options_.model_tolerance_rel) {
       model_tolerance_ = *options_.model_tolerance_rel * diameter_;
+    } else if (cell_.shape_tolerance_rel > 0) {
+      model_tolerance_ = std::min(cell_.shape_tolerance_rel, kMostShapeToleranceRel) * diameter_;
     } else if (is_surface()) {
       model_tolerance_ = kSurfaceSymmetryToleranceRel * diameter_;
     } else {
@@ -134,7 +138,12 @@ class Verifier {
     const double least = plane() ? rounding_ : resolution_of(diameter_, magnitude_);
     model_tolerance_ = std::max(model_tolerance_, least);
     examined_.facts.pinches.tolerance = model_tolerance_;
+    auto* planar_model = std::get_if<internal::PlanarModel>(&examined_.geometry);
+    if (planar_model != nullptr) planar_model->by_shape = by_shape();
   }
+
+  // A cell that follows the model's outline, in the words of its file, need not have its vertices.
+  [[nodiscard]] bool by_shape() const { return cell_.fold > 1 && cell_.shape_tolerance_rel > 0; }
 
   // Without a model nothing exempts a pinch.
   [[nodiscard]] const ModelPinches& pinches() const { return examined_.facts.pinches; }
@@ -194,7 +203,8 @@ class Verifier {
     if (!wanted) return;
     const bool surface = model_ != nullptr && is_surface();
     // A boundary moved by a distance changes what it encloses by that distance times its size.
-    const double moved = options_.model_tolerance_rel ? model_tolerance_ : 2 * asymmetry_;
+    const bool within = options_.model_tolerance_rel || by_shape();
+    const double moved = within ? model_tolerance_ : 2 * asymmetry_;
     const double allowed = (surface ? kSurfaceMeasureRel : kExactMeasureRel) * std::abs(*wanted) +
                            moved * examined_.facts.boundary_size;
     checks_.add(plane() ? "model.area" : "model.volume", std::abs(found - *wanted) <= allowed,

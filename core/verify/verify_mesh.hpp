@@ -47,6 +47,9 @@
 //   model.facets            PLC: its facets are unions of mesh faces, by area
 //   model.boundary          the mesh's boundary lies on what bounds the domain
 //   model.boundary_complete no elements on both sides of what bounds the domain
+//                           Of a PSLG whose outline was made exact from one sector, as the cell's
+//                           file says: only loose vertices are nodes; segments are near mesh edges,
+//                           and the mesh's boundary near the domain's, by all their points
 //   model.holes, .regions   no element at a hole's seed; the seed's attribute at a region's
 //   model.region_borders    regions change at segments (PLC: facets) only
 //   model.region_measure    no element above its region's own bound
@@ -84,7 +87,8 @@ struct VerifyReport {
 
 struct VerifyOptions {
   double tolerance_rel = 1e-9;  // of pairs and copies, relative to the model's diameter
-  // Of nodes against the model, which symmetrising moves; nullopt: of a surface
+  // Of nodes against the model, which symmetrising moves; nullopt: what a planar cell says that its
+  // outline was made exact within, of a surface
   // kSurfaceSymmetryToleranceRel, of a PSLG or PLC four times the model's own asymmetry, which is
   // nothing where the fold is 1. Never less than rounding, nor in space than the resolution.
   std::optional<double> model_tolerance_rel;

@@ -224,7 +224,9 @@ class CellMeshBuilder {
 SymmetryCellMesh build_cell_mesh(const InitialTriangulation& triangulation,
                                  const CellCut& cut,
                                  const SymmetricPslg& pslg) {
-  return CellMeshBuilder(triangulation, cut, pslg).build();
+  SymmetryCellMesh mesh = CellMeshBuilder(triangulation, cut, pslg).build();
+  mesh.shape_tolerance_rel = static_cast<float>(pslg.shape_tolerance_rel);
+  return mesh;
 }
 
 }  // namespace symcell::plane

@@ -3,9 +3,10 @@
 // The error of fold n is the largest distance between a sample point (vertex, middle of a segment)
 // turned by a multiple of 2 pi / n and the segments of the same kind. "The largest n under the
 // tolerance" would be wrong: a fine polygon passes every fold for a circle, and a 64-fold disc
-// passes 65. A fold is kept if its error is within the tolerance, and
-//   1. it is much smaller than that of an arbitrary angle, or vertices fall on vertices;
+// passes 65. A fold is kept if
+//   1. its error is much smaller than that of an arbitrary angle, or vertices fall on vertices;
 //   2. no other fold, neither dividing the other, has less than a quarter of its error.
+// Neither rule knows the tolerance, so that a larger one never loses a fold.
 #pragma once
 
 #include <vector>
@@ -35,14 +36,10 @@ class FoldDetector {
                double tolerance,
                const Point2* centre);
 
-  // The folds above 1 that pass a first test, ascending, judged by the rules above.
-  [[nodiscard]] Result<std::vector<FoldFit>> ladder(ExecutionContext& context) const;
-
-  // The folds up to kMostNearFold that are not `known` to fit, with errors up to `reach`, ascending.
-  // Cost: hardly any unless there are some.
-  [[nodiscard]] Result<std::vector<FoldFit>> near(const std::vector<FoldFit>& known,
-                                                  double reach,
-                                                  ExecutionContext& context) const;
+  // The folds above 1 with errors up to `reach` (those above kMostNearFold: up to the tolerance),
+  // ascending, judged by the rules above.
+  // Cost: a few searches for each fold up to the number of vertices, thousands for those that fit.
+  [[nodiscard]] Result<std::vector<FoldFit>> ladder(double reach, ExecutionContext& context) const;
 
   // One fold, measured; the error may exceed the tolerance.
   [[nodiscard]] FoldFit fit(std::int32_t fold) const;
@@ -56,15 +53,43 @@ class FoldDetector {
     double spacing = 0;  // length of the shortest edge at the vertex
   };
 
+  // What a measurement may cost, and from where on its result is of no interest.
+  struct Effort {
+    double reach = 0;           // input units
+    std::int64_t searches = 0;  // of the nearest segment
+  };
+
+  // Edges with one marker and the same classes of faces on their two sides, whichever is which.
+  struct Kind {
+    std::vector<std::int32_t> edges;  // of the prepared PSLG
+    SegmentIndex index;               // of these
+  };
+
+  void sort_by_kind();
   void collect_samples();
+  void count_radii();
   void keep_discriminating_samples();
   [[nodiscard]] double miss(
       const Sample& sample, Point2 image, double cosine, double sine, double reach) const;
-  [[nodiscard]] bool passes_quickly(std::int32_t fold, double reach) const;
-  [[nodiscard]] double arbitrary_angle_error() const;
-  [[nodiscard]] std::vector<std::int32_t> candidates(bool revolution) const;
-  [[nodiscard]] Point2 refine_centre(std::int32_t fold, Point2 centre) const;
-  void measure(FoldFit& fit) const;
+  [[nodiscard]] bool fits(
+      const Sample& sample, Point2 image, double cosine, double sine, double reach) const;
+  [[nodiscard]] bool alike(std::int32_t id, const PreparedEdge& edge, Point2 along) const;
+  [[nodiscard]] double arbitrary_angle_error(double enough) const;
+  [[nodiscard]] bool fits_turn(double angle,
+                               double reach,
+                               std::size_t samples,
+                               std::vector<std::int32_t>& order) const;
+  [[nodiscard]] bool passes_first_look(std::int32_t fold,
+                                       double reach,
+                                       std::vector<std::int32_t>& order) const;
+  [[nodiscard]] Result<std::vector<std::int32_t>> candidates(double arbitrary,
+                                                             double reach,
+                                                             ExecutionContext& context) const;
+  [[nodiscard]] bool divides_a_class(std::int32_t fold) const;
+  [[nodiscard]] Point2 refine_centre(double angle, Point2 centre, double reach) const;
+  [[nodiscard]] FoldFit fit(std::int32_t fold, const Effort& effort) const;
+  void measure(FoldFit& fit, const Effort& effort) const;
+  [[nodiscard]] bool vertices_match(const FoldFit& fit) const;
   void judge(std::vector<FoldFit>& fits, double arbitrary) const;
 
   const PreparedPslg& prepared_;
@@ -73,8 +98,12 @@ class FoldDetector {
   double tolerance_;
   bool centre_given_;
   Point2 centre_;
-  std::vector<Sample> samples_;      // the most selective first
-  std::int64_t smallest_class_ = 0;  // vertices at the rarest radius
+  std::vector<Kind> kinds_;
+  std::vector<std::int32_t> kind_of_;  // per edge of the prepared PSLG
+  mutable std::int64_t looks_ = 0;     // at samples, by fits_turn; reset by candidates
+  std::vector<Sample> samples_;        // the most selective first
+  // Numbers of vertices that share a radius, the fewest, by several notions of sharing.
+  std::vector<std::int64_t> class_sizes_;
 };
 
 }  // namespace symcell::plane

@@ -71,6 +71,7 @@ Result<PslgInspection> inspect_pslg(const Pslg& pslg,
   const PreparedPslg prepared = prepare_pslg(pslg, *subdomains, options.ignore_markers);
   PslgInspection result;
   result.fold = symmetric->fold;
+  result.geometry_fold = symmetric->geometry_fold;
   result.centre = symmetric->centre;
   result.symmetry_error_rel = symmetric->symmetry_error_rel;
   result.area = prepared.area;

@@ -260,6 +260,10 @@ class Closure {
       }
       return {};
     }
+    if (!request_.may_add) {
+      return not_symmetric(describe_input(member_[at(first)]) + " has not all its copies",
+                           member_[at(first)]);
+    }
     created_ += static_cast<std::size_t>(fold() - present);
     if (created_ > kMaxPslgVertices) {
       return fail(ErrorCode::kTooLarge, "the symmetric copies of the vertices exceed " +

@@ -19,6 +19,7 @@ struct ClosureRequest {
   Point2 centre;
   double link = 0;       // positions this near after rotation are copies of each other
   double tolerance = 0;  // largest move allowed; both in input units
+  bool may_add = true;   // copies that the shape has and the vertices lack
 };
 
 struct ClosedOrbits {

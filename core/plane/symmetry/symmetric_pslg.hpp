@@ -44,7 +44,11 @@ struct SymmetricPslg {
   double symmetry_error_rel = 0;  // largest move of a vertex / diameter
   double diameter = 0;            // of the input, bounding-box diagonal
   bool fold_detected = false;
+  std::int32_t geometry_fold = 1;  // likewise with markers and region attributes set aside
   bool centre_detected = false;
+  // Not 0 where vertices of the input need not be vertices here, or are moved by more than the usual
+  // tolerance: the share of the diameter to which its segments keep their places.
+  double shape_tolerance_rel = 0;
   std::vector<Warning> warnings;  // of the choice of fold
 
   [[nodiscard]] std::int32_t segment_marker(std::size_t segment, std::int32_t copy) const {

@@ -2,26 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
+#include <utility>
 
 #include "core/cell/inspection.hpp"
 #include "core/geometry/limits.hpp"
-#include "core/geometry/point_tree.hpp"
-#include "core/geometry/rotation.hpp"
 #include "core/geometry/segment_index.hpp"
 #include "core/model/describe.hpp"
+#include "core/plane/symmetry/close_fold.hpp"
 #include "core/plane/symmetry/fold_detection.hpp"
-#include "core/plane/symmetry/lifted_check.hpp"
-#include "core/plane/symmetry/orbit_closure.hpp"
 #include "core/plane/symmetry/prepared_pslg.hpp"
 #include "core/plane/symmetry/symmetrise_subdomains.hpp"
 
 namespace symcell::plane {
 namespace {
-
-// Share of the diameter within which a vertex and an image of another are a near miss for whoever
-// compares a mesh with its model.
-constexpr double kNearMissRel = 1e-5;
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -67,29 +62,37 @@ Point2 plain_centre(const PreparedPslg& prepared) {
 class Symmetriser {
  public:
   Symmetriser(const Pslg& pslg,
+              const Subdomains& subdomains,
               const MeshOptions& options,
               const PreparedPslg& prepared,
               ExecutionContext& context)
       : pslg_(pslg),
+        subdomains_(subdomains),
         options_(options),
         context_(context),
         prepared_(prepared),
         index_(positions_of(prepared)),
         tolerance_(options.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel) *
                    prepared.diameter),
-        detector_(prepared, index_, tolerance_, options.center ? &*options.center : nullptr) {}
+        detector_(prepared, index_, tolerance_, given_centre()) {}
 
   Result<SymmetricPslg> run(std::vector<FoldFit>* ladder) {
     if (options_.fold == 1) return without_symmetry();
     if (options_.fold) return declared(*options_.fold);
-    auto fits = detector_.ladder(context_);
+    auto fits = detector_.ladder(reach(), context_);
     if (!fits) return error_of(fits);
-    auto result = largest(*fits);
+    auto symmetric = largest(prepared_, *fits, 1);
+    if (!symmetric) return error_of(symmetric);
+    auto result = *symmetric ? Result<SymmetricPslg>(std::move(**symmetric)) : without_symmetry();
     if (!result) return result;
-    const auto near = detector_.near(*fits, reach(), context_);
-    if (!near) return error_of(near);
-    SYMCELL_TRY(warn(*near, *result));
-    if (ladder != nullptr) *ladder = completed(std::move(*fits), *near, result->fold);
+    result->fold_detected = true;
+    result->geometry_fold = result->fold;
+    SYMCELL_TRY(warn(*fits, *result));
+    SYMCELL_TRY(set_attributes_aside(*result));
+    if (result->geometry_fold == 1) {
+      result->warnings.push_back(no_symmetry_warning(tolerance_ / prepared_.diameter));
+    }
+    if (ladder != nullptr) *ladder = completed(std::move(*fits), result->fold);
     return result;
   }
 
@@ -98,21 +101,20 @@ class Symmetriser {
     return close(1, options_.center ? *options_.center : plain_centre(prepared_));
   }
 
-  // Of the largest fold that is kept and can be closed; `fits` keeps no larger one.
-  Result<SymmetricPslg> largest(std::vector<FoldFit>& fits) {
-    for (auto fit = fits.rbegin(); fit != fits.rend(); ++fit) {
-      if (!fit->kept) continue;
-      auto result = close(fit->fold, fit->centre);
-      if (result) {
-        result->fold_detected = true;
-        return result;
-      }
-      if (result.error().code != ErrorCode::kNotSymmetric) return result;
+  // Of the largest fold above `least` that is kept, fits and can be closed; nothing if none does.
+  // Afterwards `fits` keeps no larger one that fits.
+  Result<std::optional<SymmetricPslg>> largest(const PreparedPslg& prepared,
+                                               std::vector<FoldFit>& fits,
+                                               std::int32_t least) {
+    for (auto fit = fits.rbegin(); fit != fits.rend() && fit->fold > least; ++fit) {
+      if (!fit->kept || fit->error > tolerance_) continue;
+      auto result = close_fold(pslg_, options_, prepared, index_,
+                               {fit->fold, fit->centre, tolerance_}, context_);
+      if (result) return std::optional<SymmetricPslg>(std::move(*result));
+      if (result.error().code != ErrorCode::kNotSymmetric) return error_of(result);
       fit->kept = false;
     }
-    auto result = without_symmetry();
-    if (result) result->fold_detected = true;
-    return result;
+    return std::optional<SymmetricPslg>();
   }
 
   [[nodiscard]] double reach() const {
@@ -122,13 +124,13 @@ class Symmetriser {
   }
 
   // Of the folds that only a larger tolerance takes, the largest; each with the smallest tolerance.
-  Result<void> warn(const std::vector<FoldFit>& near, SymmetricPslg& result) {
+  Result<void> warn(const std::vector<FoldFit>& fits, SymmetricPslg& result) {
     constexpr std::size_t kMostNear = 3;  // reported
-    constexpr int kMostTried = 5;         // each is closed
+    constexpr int kMostTried = 3;         // each is closed
     const double given = tolerance_ / prepared_.diameter;
     int tried = 0;
-    for (auto fit = near.rbegin(); fit != near.rend() && fit->fold > result.fold; ++fit) {
-      if (fit->error <= tolerance_) continue;
+    for (auto fit = fits.rbegin(); fit != fits.rend() && fit->fold > result.fold; ++fit) {
+      if (!fit->kept || fit->error <= tolerance_) continue;
       if (result.warnings.size() == kMostNear || tried == kMostTried) break;
       const double error = fit->error / prepared_.diameter;
       const NearFold fold{fit->fold, error, tolerance_that_takes(error)};
@@ -139,38 +141,106 @@ class Symmetriser {
             return fold.tolerance_rel < share * w.near_fold->tolerance_rel;
           });
       if (!of_use) continue;
-      ++tried;
-      MeshOptions wider = options_;
-      wider.symmetry_tolerance_rel = fold.tolerance_rel;
-      Symmetriser other(pslg_, wider, prepared_, context_);
-      auto fits = other.detector_.ladder(context_);
-      if (!fits) return error_of(fits);
-      const auto found = other.largest(*fits);
-      if (!found && is_limit(found.error().code)) return error_of(found);
-      if (!found || found->fold != fold.fold) continue;
+      if (is_cheap(fit->fold)) {
+        ++tried;
+        const auto closed =
+            close_fold(pslg_, options_, prepared_, index_,
+                       {fit->fold, fit->centre, fold.tolerance_rel * prepared_.diameter}, context_);
+        if (!closed && is_limit(closed.error().code)) return error_of(closed);
+        if (!closed) continue;
+      }
       result.warnings.push_back(near_symmetry_warning(fold, result.fold, given));
     }
-    if (result.fold == 1) result.warnings.push_back(no_symmetry_warning(given));
     return {};
   }
 
-  // Both lists as one, with what giving each fold would lead to.
-  std::vector<FoldFit> completed(std::vector<FoldFit> fits,
-                                 const std::vector<FoldFit>& near,
-                                 std::int32_t taken) {
+  [[nodiscard]] bool has_attributes() const {
+    if (prepared_.ignore_markers) return false;
+    const PreparedEdge& first = prepared_.edges.front();
+    const std::int32_t kind = std::max(first.left, first.right);
+    const auto other = [kind](std::int32_t c) { return c != 0 && c != kind; };
+    return std::any_of(prepared_.edges.begin(), prepared_.edges.end(), [&](const PreparedEdge& e) {
+      return e.marker != first.marker || other(e.left) || other(e.right);
+    });
+  }
+
+  // What the fold of the geometry is, if markers and region attributes are all that breaks it.
+  Result<void> set_attributes_aside(SymmetricPslg& result) {
+    if (!has_attributes()) return {};
+    const PreparedPslg geometry = prepare_pslg(pslg_, subdomains_, true);
+    const FoldDetector detector(geometry, index_, tolerance_, given_centre());
+    auto fits = detector.ladder(tolerance_, context_);
+    if (!fits) return error_of(fits);
+    const auto larger = largest(geometry, *fits, result.fold);
+    if (!larger) return error_of(larger);
+    if (!*larger) return {};
+    result.geometry_fold = (*larger)->fold;
+    result.warnings.push_back(markers_break_symmetry_warning(
+        result.fold, result.geometry_fold,
+        broken_attributes(result.geometry_fold, (*larger)->centre).text));
+    return {};
+  }
+
+  // A pair of segments that are images of each other and differ in what they carry.
+  struct Difference {
+    std::string text;
+    std::vector<std::int64_t> segments;
+  };
+  [[nodiscard]] Difference broken_attributes(std::int32_t fold, Point2 centre) const {
+    const double angle = 2 * std::numbers::pi / fold;
+    const double cosine = std::cos(angle), sine = std::sin(angle);
+    const auto image = [&](Point2 p) {
+      const Point2 q = p - centre;
+      return Point2{centre.x + cosine * q.x - sine * q.y, centre.y + sine * q.x + cosine * q.y};
+    };
+    for (const PreparedEdge& edge : prepared_.edges) {
+      const Point2 a = prepared_.points[at(edge.a)], b = prepared_.points[at(edge.b)];
+      const SegmentIndex::Hit hit = index_.nearest(image(a + 0.5 * (b - a)), prepared_.diameter);
+      if (hit.segment < 0) continue;
+      const PreparedEdge& other = prepared_.edges[at(hit.segment)];
+      const Point2 u = image(b) - image(a);
+      const Point2 w = prepared_.points[at(other.b)] - prepared_.points[at(other.a)];
+      const bool same_way = dot(u, w) >= 0;
+      const std::string pair = "segments " + std::to_string(edge.segment) + " and " +
+                               std::to_string(other.segment) + ", which are images of each other,";
+      if (edge.marker != other.marker) {
+        return {pair + " have markers " + std::to_string(edge.marker) + " and " +
+                    std::to_string(other.marker),
+                {edge.segment, other.segment}};
+      }
+      if (edge.left != (same_way ? other.left : other.right) ||
+          edge.right != (same_way ? other.right : other.left)) {
+        return {pair + " have regions beside them that differ in attribute or max_area",
+                {edge.segment, other.segment}};
+      }
+    }
+    return {};
+  }
+
+  // Whether a fold may be closed only to tell what would come of it: where all else fails, every
+  // sector gets the vertices of all.
+  [[nodiscard]] bool is_cheap(std::int32_t fold) const {
+    constexpr double kMostCopies = 50'000;  // of vertices: tens of milliseconds
+    return static_cast<double>(prepared_.points.size()) * fold <= kMostCopies;
+  }
+
+  // What giving each fold would lead to.
+  std::vector<FoldFit> completed(std::vector<FoldFit> fits, std::int32_t taken) {
     constexpr int kMostTried = 12;  // each is closed
-    std::erase_if(fits, [&](const FoldFit& f) { return f.error > tolerance_; });
-    fits.insert(fits.end(), near.begin(), near.end());
-    std::sort(fits.begin(), fits.end(),
-              [](const FoldFit& a, const FoldFit& b) { return a.fold < b.fold; });
     int tried = 0;
-    for (FoldFit& fit : fits) {
+    for (auto fit = fits.rbegin(); fit != fits.rend(); ++fit) {
       // A divisor of what is symmetric is.
-      fit.accepted = taken % fit.fold == 0;
-      if (fit.accepted || fit.error > 2 * tolerance_) continue;
-      fit.accepted = ++tried > kMostTried ? fit.kept : declared(fit.fold).has_value();
+      fit->accepted = taken % fit->fold == 0;
+      if (fit->accepted || fit->error > 2 * tolerance_) continue;
+      const bool try_it = is_cheap(fit->fold) && ++tried <= kMostTried;
+      fit->accepted = try_it ? close(fit->fold, fit->centre).has_value()
+                             : fit->kept && fit->error <= tolerance_;
     }
     return fits;
+  }
+
+  [[nodiscard]] const Point2* given_centre() const {
+    return options_.center ? &*options_.center : nullptr;
   }
 
   Result<SymmetricPslg> declared(std::int32_t fold) {
@@ -178,9 +248,11 @@ class Symmetriser {
     auto result = close(fold, fit.centre);
     if (result || result.error().code != ErrorCode::kNotSymmetric) return result;
     const double limit = options_.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel);
-    std::string message = "the model is not " + std::to_string(fold) + "-fold symmetric about " +
-                          describe_point(fit.centre) + " within the tolerance of " +
-                          describe_rounded(limit) + " of its diameter: ";
+    const std::string name = std::to_string(fold) + "-fold symmetric";
+    if (auto only = broken_by_attributes(fold, name)) return fail(std::move(*only));
+    std::string message = "the model is not " + name + " about " + describe_point(fit.centre) +
+                          " within the tolerance of " + describe_rounded(limit) +
+                          " of its diameter: ";
     Error error = result.error();
     // An infinite error means that only kinds differ; the closure names them.
     if (fit.error > tolerance_ && std::isfinite(fit.error) && fit.worst_point >= 0) {
@@ -196,97 +268,30 @@ class Symmetriser {
     return fail(std::move(error));
   }
 
-  // Links copies as tightly as succeeds: a wide link would merge vertices that only lie close. But
-  // where a tight one gives vertices copies that the model lacks, some of those may stand beside
-  // others that were meant, by less than the tolerance: then the widest that needs the fewest.
+  // The error of a fold that the geometry has, but not with its markers and attributes.
+  std::optional<Error> broken_by_attributes(std::int32_t fold, const std::string& name) {
+    if (!has_attributes()) return std::nullopt;
+    const PreparedPslg geometry = prepare_pslg(pslg_, subdomains_, true);
+    const FoldFit fit = FoldDetector(geometry, index_, tolerance_, given_centre()).fit(fold);
+    if (fit.error > 2 * tolerance_) return std::nullopt;
+    const auto closed =
+        close_fold(pslg_, options_, geometry, index_, {fold, fit.centre, tolerance_}, context_);
+    if (!closed) return std::nullopt;
+    Difference difference = broken_attributes(fold, closed->centre);
+    if (difference.segments.empty()) return std::nullopt;
+    return Error{
+        ErrorCode::kNotSymmetric,
+        "the geometry is " + name + ", markers and region attributes are not: " + difference.text +
+            "; give ignore_markers=true to set markers and attributes aside, or correct them",
+        difference.segments, "/segments/" + std::to_string(difference.segments.front())};
+  }
+
   Result<SymmetricPslg> close(std::int32_t fold, Point2 centre) {
-    const double finest = std::min(prepared_.resolution(), 2 * tolerance_);
-    std::optional<SymmetricPslg> best;
-    for (double link = finest;; link = std::min(1000 * link, 2 * tolerance_)) {
-      auto result = close_linked({fold, centre, link, std::max(tolerance_, finest)});
-      if (result) {
-        if (!best || result->orbit_points.size() < best->orbit_points.size()) {
-          best = std::move(*result);
-        }
-      } else if (is_limit(result.error().code) ||
-                 (!best && result.error().code != ErrorCode::kNotSymmetric)) {
-        return result;
-      }
-      if (best && (fold == 1 || !adds_vertices(*best))) return std::move(*best);
-      if (fold == 1 || link >= 2 * tolerance_) {
-        if (!best) return result;
-        if (options_.symmetry_tolerance_rel.has_value() || !has_copies_beside_vertices(*best)) {
-          return std::move(*best);
-        }
-        return fail(ErrorCode::kNotSymmetric,
-                    "vertices have copies that stand beside others and are near misses of them");
-      }
-    }
-  }
-
-  [[nodiscard]] bool adds_vertices(const SymmetricPslg& pslg) const {
-    const std::size_t centre = pslg.centre_orbit >= 0 ? 1 : 0;
-    const std::size_t all =
-        (pslg.orbit_points.size() - centre) * static_cast<std::size_t>(pslg.fold) + centre;
-    return all > prepared_.points.size() + 1;  // a centre may be new, cut into a segment
-  }
-
-  // Whether positions that are but a near miss of each other would be several vertices of the result
-  // and are one of the model: no mesh of such spots can be distinguished from a wrong one.
-  [[nodiscard]] bool has_copies_beside_vertices(const SymmetricPslg& pslg) const {
-    const RotationTable rotations(pslg.fold);
-    std::vector<Point3> lifted, given;
-    for (std::size_t v = 0; v < pslg.orbit_points.size(); ++v) {
-      const bool centre = static_cast<std::int32_t>(v) == pslg.centre_orbit;
-      for (std::int32_t k = 0; k < (centre ? 1 : pslg.fold); ++k) {
-        const Point2 p = rotations.rotate(pslg.orbit_points[v], k);
-        lifted.push_back({p.x, p.y, 0});
-      }
-    }
-    for (const Point2 p : prepared_.points) {
-      given.push_back({p.x - pslg.centre.x, p.y - pslg.centre.y, 0});
-    }
-    const PointTree all(lifted), model(given);
-    // On either side of what counts as a near miss vertices may have been moved by the tolerance.
-    const double side = kNearMissRel * prepared_.diameter + 2 * tolerance_;
-    const Point3 reach{side, side, 0};
-    return std::any_of(given.begin(), given.end(), [&](const Point3& p) {
-      std::int64_t more = 0;
-      all.within_box(p - reach, p + reach, [&](std::int32_t) { ++more; });
-      model.within_box(p - reach, p + reach, [&](std::int32_t) { --more; });
-      return more > 0;
-    });
-  }
-
-  Result<SymmetricPslg> close_linked(ClosureRequest request) {
-    auto closed = close_orbits(prepared_, index_, request, context_);
-    if (!closed) return error_of(closed);
-    const bool settled = length(closed->centre_shift) <= 1e-3 * prepared_.resolution();
-    if (request.fold > 1 && !options_.center && !settled) {
-      ClosureRequest moved = request;
-      moved.centre = request.centre + closed->centre_shift;
-      auto again = close_orbits(prepared_, index_, moved, context_);
-      if (again && again->pslg.symmetry_error_rel <= closed->pslg.symmetry_error_rel) {
-        closed = std::move(again);
-      }
-    }
-    SymmetricPslg& result = closed->pslg;
-    result.diameter = prepared_.diameter;
-    result.centre_detected = !options_.center;
-    copy_seeds(result);
-    SYMCELL_TRY(check_and_seed(*closed, context_));
-    return std::move(result);
-  }
-
-  void copy_seeds(SymmetricPslg& result) const {
-    for (const Point2 hole : pslg_.holes) result.holes.push_back(hole - result.centre);
-    for (PslgRegion region : pslg_.regions) {
-      region.point = region.point - result.centre;
-      result.regions.push_back(region);
-    }
+    return close_fold(pslg_, options_, prepared_, index_, {fold, centre, tolerance_}, context_);
   }
 
   const Pslg& pslg_;
+  const Subdomains& subdomains_;
   const MeshOptions& options_;
   ExecutionContext& context_;
   const PreparedPslg& prepared_;
@@ -308,7 +313,7 @@ Result<SymmetricPslg> symmetrise_subdomains(const Pslg& pslg,
     return fail(ErrorCode::kDegenerateGeometry, "the segments enclose nothing to mesh");
   }
   context.report(Phase::kSymmetry, 0.04);
-  return Symmetriser(pslg, options, prepared, context).run(ladder);
+  return Symmetriser(pslg, subdomains, options, prepared, context).run(ladder);
 }
 
 Result<SymmetricPslg> symmetrise(const Pslg& pslg,
