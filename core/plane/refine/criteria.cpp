@@ -49,7 +49,8 @@ void Criteria::find_corners(const QuotientTriangulation& mesh) {
   for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {
     if (!mesh.alive(t)) continue;
     for (std::uint32_t i = 0; i < 3; ++i) {
-      if (mesh.triangle(t).seg[prev3(i)] == kNoSubsegment) continue;
+      const SubsegmentId first = mesh.triangle(t).seg[prev3(i)];
+      if (first == kNoSubsegment) continue;
       const VertexId v = mesh.triangle(t).v[i];
       StarItem item = star_item(mesh, 3 * t + i);
       const auto direction = [&](std::uint32_t which) {
@@ -60,7 +61,10 @@ void Criteria::find_corners(const QuotientTriangulation& mesh) {
       while (mesh.triangle(item.t).seg[next3(item.i)] == kNoSubsegment) {
         if (!rotate_ccw(mesh, item)) break;
       }
-      add_corner(mesh, v, from, direction(2));
+      // Between a segment at the centre and its own next copy: the fold's angle, not the input's.
+      const bool whole_sector =
+          v == mesh.centre() && first == mesh.triangle(item.t).seg[next3(item.i)];
+      if (!whole_sector) add_corner(mesh, v, from, direction(2));
     }
   }
   std::sort(narrow_.begin(), narrow_.end(),
@@ -169,12 +173,8 @@ Exemption Criteria::exemption(const QuotientTriangulation& mesh,
   for (std::uint32_t i = 0; i < 3; ++i) {
     if (in_narrow_corner(mesh, t, i)) return Exemption::kSmallInputAngle;
   }
-  if (centre_is_narrow_ || centre_is_exact_) {
-    for (const VertexId v : t.v) {
-      if (v != mesh.centre()) continue;
-      if (centre_is_narrow_) return Exemption::kFoldAngleAtCentre;
-      if (is_self_adjacent(t, id)) return Exemption::kMet;
-    }
+  if ((centre_is_narrow_ || centre_is_exact_) && is_self_adjacent(t, id)) {
+    return centre_is_narrow_ ? Exemption::kFoldAngleAtCentre : Exemption::kMet;
   }
   if (is_seditious(mesh, t, assessment)) return Exemption::kSeditious;
   return Exemption::kNone;

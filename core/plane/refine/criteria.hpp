@@ -5,7 +5,8 @@
 //
 // Exempt are only triangles whose bound the input itself forbids: those in a corner of the input
 // that is narrower than the bound, those whose shortest edge spans such a corner ("seditious",
-// [Miller-Pav-Walkington03]), and those at the centre where 360/n is below the bound.
+// [Miller-Pav-Walkington03]), and, where 360/n is below the bound, the triangle (o, a, Ra) at the
+// centre, whose other two angles are near 90 degrees.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +35,7 @@ enum class Exemption : std::uint8_t {
   kNone,
   kSmallInputAngle,
   kSeditious,
-  kFoldAngleAtCentre,
+  kFoldAngleAtCentre,  // (o, a, Ra) where 360/n is below the bound
   kMet  // (o, a, Ra) where 360/n is the bound itself: keeps it, though not the margin
 };
 
