@@ -1,8 +1,10 @@
 #include "core/plane/mesh_pslg.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/base/stopwatch.hpp"
 #include "core/cell/measure_cell.hpp"
@@ -30,6 +32,10 @@ constexpr double kSamplingAngleDeg = 38;  // below, samples are taken from the s
 // milliseconds each, and greedy coarsening ends in different places.
 constexpr std::size_t kSmallCell = 500;
 constexpr double kFurtherStartsDeg[] = {0, 0, 0, 1, 2, 3};
+// Where sizes decide the mesh, the angle hardly matters to the count, and chance does: starts for
+// what other bounds would be given keep the count from falling where the angle grows.
+constexpr double kFurtherStartsSizedDeg[] = {5, 10, 15, 20};
+constexpr double kHighestSizedStartDeg = 30;  // above, angles ask for more than sizes do
 
 // A bound on the area asks for at least area / bound triangles: refuse at once what cannot fit.
 Result<void> check_area_budget(const InitialTriangulation& start,
@@ -105,6 +111,22 @@ bool has_bad_triangle(const QuotientTriangulation& mesh, const Criteria& criteri
   return false;
 }
 
+// A further start is given up where refinement, which coarsening follows, makes this many times the
+// triangles of the best mesh: a higher bound may ask for a million where the one asked for needs none.
+constexpr std::size_t kHopeless = 8;
+
+std::vector<double> bounds_of_further_starts(const MeshOptions& options, bool sized) {
+  std::vector<double> bounds;
+  for (const double higher : kFurtherStartsDeg) {
+    bounds.push_back(std::min(options.min_angle_deg + higher, kMaxMinAngleDeg));
+  }
+  for (const double higher : kFurtherStartsSizedDeg) {
+    const double bound = options.min_angle_deg + higher;
+    if (sized && bound <= kHighestSizedStartDeg) bounds.push_back(bound);
+  }
+  return bounds;
+}
+
 // From the initial triangulation again, with other samples, where a run cascades; and a few times
 // more where the cell is small, keeping the best.
 Result<WorkDone> refine_from_starts(InitialTriangulation& start,
@@ -112,34 +134,44 @@ Result<WorkDone> refine_from_starts(InitialTriangulation& start,
                                     const MeshOptions& options,
                                     Point2 centre,
                                     ExecutionContext& context) {
-  const auto attempt = [&](QuotientTriangulation& mesh, Criteria& own, int number) {
+  constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+  const auto attempt = [&](QuotientTriangulation& mesh, Criteria& own, int number,
+                           std::size_t most) {
     const bool sample =
         !options.plain && (number > 0 || options.min_angle_deg >= kSamplingAngleDeg);
     return refine_and_coarsen(mesh, own,
                               {centre, !options.plain, sample ? kSamples : 0,
-                               options.seed + static_cast<std::uint64_t>(number)},
+                               options.seed + static_cast<std::uint64_t>(number), most},
                               context);
   };
   const QuotientTriangulation initial = start.mesh;
   const Criteria initial_criteria = criteria;
   int number = 0;
-  auto best = attempt(start.mesh, criteria, number++);
+  auto best = attempt(start.mesh, criteria, number++, kAny);
   while (!best) {
     const bool cascaded = best.error().code == ErrorCode::kBoundUnreachable;
     if (!cascaded || options.plain || number == kAttempts) return best;
     start.mesh = initial;
     criteria = initial_criteria;
-    best = attempt(start.mesh, criteria, number++);
+    best = attempt(start.mesh, criteria, number++, kAny);
   }
-  if (options.plain || start.mesh.triangle_count() > kSmallCell) return best;
-  for (const double higher : kFurtherStartsDeg) {
+  const bool untouched = best->refined.inserted == 0;
+  if (options.plain || untouched || start.mesh.triangle_count() > kSmallCell) return best;
+  for (const double bound : bounds_of_further_starts(options, criteria.has_size_bound())) {
     MeshOptions tighter = options;
-    tighter.min_angle_deg = std::min(options.min_angle_deg + higher, kMaxMinAngleDeg);
+    tighter.min_angle_deg = bound;
     QuotientTriangulation mesh = initial;
     Criteria own(mesh, start.subdomains, tighter);
-    auto work = attempt(mesh, own, number++);
-    if (!work && work.error().code != ErrorCode::kBoundUnreachable) return work;
-    if (!work || mesh.triangle_count() >= start.mesh.triangle_count()) continue;
+    const std::size_t most = kHopeless * start.mesh.triangle_count();
+    auto work = attempt(mesh, own, number++, most);
+    if (!work) {
+      const bool given_up =
+          work.error().code == ErrorCode::kBoundUnreachable ||
+          (work.error().code == ErrorCode::kElementLimit && mesh.triangle_count() > most);
+      if (!given_up) return work;
+      continue;
+    }
+    if (mesh.triangle_count() >= start.mesh.triangle_count()) continue;
     // What a higher bound exempts, the one asked for may not.
     Criteria asked = initial_criteria;
     asked.adopt_segment_ends(own);

@@ -42,6 +42,10 @@ Criteria::Criteria(const QuotientTriangulation& mesh,
   find_corners(mesh);
 }
 
+double Criteria::star_angle() const {
+  return std::max(goal_angle_, kLeastStarDeg * kRadiansADegree);
+}
+
 void Criteria::find_corners(const QuotientTriangulation& mesh) {
   acute_.assign(mesh.vertex_slots(), 0);
   // Each corner of the input begins at a triangle whose clockwise side at the vertex is a segment,

@@ -25,6 +25,8 @@ inline constexpr double kShellAngleDeg = 60.0;
 // For bounds below this, lenses are those of this bound: a flatter lens would let points lie next
 // to segments, and edges shrink, although no angle asks for it.
 inline constexpr double kLeastLensDeg = 20.0;
+// Points are moved for stars of at least this angle.
+inline constexpr double kLeastStarDeg = 1.0;
 // So are corners below this many angle bounds: they take two triangles, whose angles leave their
 // sides hardly any freedom to differ in length (measured: without, an 87 degree corner cascades at
 // 40).
@@ -77,6 +79,10 @@ class Criteria {
   }
 
   [[nodiscard]] double goal_angle() const { return goal_angle_; }  // radians
+  // What stars made anew keep: where no angle is asked for, enough to be worth a move.
+  [[nodiscard]] double star_angle() const;
+  // Whether anything is asked for that moving and merging points could save triangles of.
+  [[nodiscard]] bool has_bound() const { return goal_angle_ > 0 || has_size_bound_; }
   [[nodiscard]] double max_area(std::int32_t face) const {
     return max_area_[static_cast<std::size_t>(face)];
   }

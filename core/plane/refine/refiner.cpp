@@ -10,7 +10,7 @@
 namespace symcell::plane {
 namespace {
 
-// An angle bound is out of reach where edges this much shorter than the shortest edge of the
+// An angle bound is out of reach where edges this much shorter than the smallest feature of the
 // initial triangulation appear: fair grading stays orders of magnitude above it, a cascade falls
 // below within a few hundred steps.
 constexpr double kCascadeRatio = 1e-5;
@@ -28,6 +28,21 @@ constexpr double kSampleReach = 1.5;
 constexpr std::uint8_t kQueued = 1;
 constexpr std::uint8_t kForced = 2;
 
+// The distance from a corner to the subsegment opposite it, squared, where its foot lies within:
+// gaps between segments may be far smaller than all edges.
+double squared_gap(const QuotientTriangulation& mesh, const Triangle& t) {
+  double least2 = std::numeric_limits<double>::infinity();
+  for (std::uint32_t j = 0; j < 3; ++j) {
+    if (t.seg[j] == kNoSubsegment) continue;
+    const Point2 p = mesh.corner_point(t, j);
+    const Point2 a = mesh.corner_point(t, next3(j)), b = mesh.corner_point(t, prev3(j));
+    if (dot(p - a, b - a) <= 0 || dot(p - b, a - b) <= 0) continue;
+    const double doubled = cross(b - a, p - a);
+    least2 = std::min(least2, doubled * doubled / squared_distance(a, b));
+  }
+  return least2;
+}
+
 }  // namespace
 
 Refiner::Refiner(Editor& editor,
@@ -38,7 +53,7 @@ Refiner::Refiner(Editor& editor,
       mesh_(editor.mesh()),
       criteria_(criteria),
       settings_(settings),
-      relocate_(settings.relocate && criteria.goal_angle() > 0),
+      relocate_(settings.relocate && criteria.has_bound()),
       context_(context),
       random_(settings.seed),
       surgery_(editor, criteria) {
@@ -46,7 +61,8 @@ Refiner::Refiner(Editor& editor,
   for (TriangleId t = 0; t < mesh_.triangle_slots(); ++t) {
     if (!mesh_.alive(t)) continue;
     const Triangle& tri = mesh_.triangle(t);
-    shortest2 = std::min(shortest2, criteria_.assess(mesh_, tri).shortest2);
+    shortest2 =
+        std::min({shortest2, criteria_.assess(mesh_, tri).shortest2, squared_gap(mesh_, tri)});
     for (const VertexId v : tri.v) extent = std::max(extent, length(mesh_.point(v)));
   }
   const double cascade = kCascadeRatio * std::sqrt(shortest2);
@@ -60,6 +76,9 @@ Result<void> Refiner::tick() {
   const auto elements = static_cast<std::uint64_t>(mesh_.triangle_count());
   const double waiting = static_cast<double>(queue_.size());
   const double quality = std::max(0.0, 1.0 - waiting / static_cast<double>(elements));
+  if (elements > settings_.most_triangles) {
+    return fail(ErrorCode::kElementLimit, "more triangles than this start may have");
+  }
   context_.report(Phase::kRefine, 0.1 + 0.6 * quality, elements, quality);
   return context_.check(elements);
 }
@@ -84,7 +103,8 @@ bool Refiner::encroached(SubsegmentId s) const {
   const std::uint32_t j = local_of(h);
   const Point2 a = mesh_.corner_point(t, next3(j)), b = mesh_.corner_point(t, prev3(j));
   if (criteria_.segment_too_long(a, b)) return true;
-  if (relocate_) return false;  // what a lens would catch is a bad triangle too: treated as such
+  // What a lens would catch is a bad triangle too, treated as such, or no angle is asked for.
+  if (relocate_ || criteria_.goal_angle() <= 0) return false;
   if (criteria_.in_lens(a, b, mesh_.corner_point(t, j))) return true;
   const HalfEdge g = t.nb[j];
   if (g == kNoHalfEdge) return false;

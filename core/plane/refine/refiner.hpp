@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -37,6 +38,8 @@ class Refiner {
     // Points tried round a bad triangle for one with a good star before its off-centre is taken.
     int samples = 0;
     std::uint64_t seed = 0;  // of the samples
+    // The mesh is given up, with kElementLimit, beyond about this many triangles.
+    std::size_t most_triangles = std::numeric_limits<std::size_t>::max();
   };
 
   Refiner(Editor& editor, Criteria& criteria, const Settings& settings, ExecutionContext& context);

@@ -11,7 +11,7 @@ StarSurgery::StarSurgery(Editor& editor, const Criteria& criteria)
     : editor_(editor),
       mesh_(editor.mesh()),
       criteria_(criteria),
-      region_(criteria.goal_angle(), criteria.max_edge2()) {
+      region_(criteria.star_angle(), criteria.max_edge2()) {
 }
 
 bool StarSurgery::touches(const std::vector<CavityEdge>& edges,
