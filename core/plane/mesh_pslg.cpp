@@ -61,21 +61,30 @@ Result<void> check_area_budget(const InitialTriangulation& start,
 Result<void> count_exempt(const QuotientTriangulation& mesh,
                           const Criteria& criteria,
                           Statistics& statistics) {
-  std::uint64_t count[5] = {};
+  constexpr std::size_t kCounted = 6;  // reasons, none included
+  std::uint64_t count[kCounted + 1] = {};
   for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {
     if (!mesh.alive(t)) continue;
     const Assessment a = criteria.assess(mesh, mesh.triangle(t));
-    if (a.verdict == Verdict::kGood) continue;
-    const Exemption why = a.too_large ? Exemption::kNone : criteria.exemption(mesh, t, a);
-    if (why == Exemption::kNone) {
+    const bool short_edge = criteria.has_short_edge(mesh, mesh.triangle(t));
+    if (a.verdict == Verdict::kGood && !short_edge) continue;
+    Exemption why = a.too_large ? Exemption::kNone : criteria.exemption(mesh, t, a);
+    if (why == Exemption::kNone && criteria.may_leave_bad()) {
+      why = criteria.has_least_edge() ? Exemption::kMinEdge : Exemption::kKeptBoundary;
+    }
+    if (why == Exemption::kNone || short_edge) {
       return fail(ErrorCode::kInternal,
                   "triangle " + std::to_string(t) + " of the finished mesh breaks a bound");
     }
     ++count[static_cast<std::size_t>(why)];
   }
-  constexpr const char* kReasons[4] = {"", "small_input_angle", "across_small_input_angle",
-                                       "fold_angle_at_centre"};
-  for (std::size_t i = 1; i < 4; ++i) {
+  constexpr const char* kReasons[kCounted] = {"",
+                                              "small_input_angle",
+                                              "across_small_input_angle",
+                                              "fold_angle_at_centre",
+                                              "kept_boundary",
+                                              "min_edge"};
+  for (std::size_t i = 1; i < kCounted; ++i) {
     if (count[i] > 0) statistics.exempt.push_back({kReasons[i], count[i]});
   }
   return {};
@@ -104,11 +113,12 @@ Result<WorkDone> refine_and_coarsen(QuotientTriangulation& mesh,
   return WorkDone{refiner.counters(), coarsener.counters(), editor.counters()};
 }
 
-bool has_bad_triangle(const QuotientTriangulation& mesh, const Criteria& criteria) {
+std::size_t count_bad(const QuotientTriangulation& mesh, const Criteria& criteria) {
+  std::size_t count = 0;
   for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {
-    if (mesh.alive(t) && criteria.is_bad(mesh, t)) return true;
+    count += mesh.alive(t) && criteria.is_bad(mesh, t) ? 1 : 0;
   }
-  return false;
+  return count;
 }
 
 // A further start is given up where refinement, which coarsening follows, makes this many times the
@@ -132,6 +142,7 @@ std::vector<double> bounds_of_further_starts(const MeshOptions& options, bool si
 Result<WorkDone> refine_from_starts(InitialTriangulation& start,
                                     Criteria& criteria,
                                     const MeshOptions& options,
+                                    const LocalSizes& sizes,
                                     Point2 centre,
                                     ExecutionContext& context) {
   constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
@@ -157,11 +168,12 @@ Result<WorkDone> refine_from_starts(InitialTriangulation& start,
   }
   const bool untouched = best->refined.inserted == 0;
   if (options.plain || untouched || start.mesh.triangle_count() > kSmallCell) return best;
+  std::size_t least_bad = count_bad(start.mesh, criteria);  // 0 unless edges have a least length
   for (const double bound : bounds_of_further_starts(options, criteria.has_size_bound())) {
     MeshOptions tighter = options;
     tighter.min_angle_deg = bound;
     QuotientTriangulation mesh = initial;
-    Criteria own(mesh, start.subdomains, tighter);
+    Criteria own(mesh, start.subdomains, tighter, sizes);
     const std::size_t most = kHopeless * start.mesh.triangle_count();
     auto work = attempt(mesh, own, number++, most);
     if (!work) {
@@ -171,11 +183,13 @@ Result<WorkDone> refine_from_starts(InitialTriangulation& start,
       if (!given_up) return work;
       continue;
     }
-    if (mesh.triangle_count() >= start.mesh.triangle_count()) continue;
     // What a higher bound exempts, the one asked for may not.
     Criteria asked = initial_criteria;
     asked.adopt_segment_ends(own);
-    if (has_bad_triangle(mesh, asked)) continue;
+    const std::size_t bad = count_bad(mesh, asked);
+    const std::size_t triangles = mesh.triangle_count();
+    if (std::pair(bad, triangles) >= std::pair(least_bad, start.mesh.triangle_count())) continue;
+    least_bad = bad;
     start.mesh = std::move(mesh);
     criteria = std::move(asked);
     best = std::move(work);
@@ -209,6 +223,7 @@ void record(const WorkDone& work,
 
 Result<MeshOutcome> mesh_pslg(const SymmetricPslg& symmetric,
                               const MeshOptions& options,
+                              const LocalSizes& sizes,
                               ExecutionContext& context) {
   MeshOutcome outcome;
   Statistics& stats = outcome.statistics;
@@ -219,9 +234,9 @@ Result<MeshOutcome> mesh_pslg(const SymmetricPslg& symmetric,
   stats.timings_ms.initial = watch.lap();
 
   const SegmentCover wanted = measure_segment_cover(start->mesh);
-  Criteria criteria(start->mesh, start->subdomains, options);
+  Criteria criteria(start->mesh, start->subdomains, options, sizes);
   SYMCELL_TRY(check_area_budget(*start, criteria, context));
-  const auto work = refine_from_starts(*start, criteria, options, symmetric.centre, context);
+  const auto work = refine_from_starts(*start, criteria, options, sizes, symmetric.centre, context);
   if (!work) return error_of(work);
   record(*work, start->mesh, symmetric.orbit_points.size(), stats.refinement);
   stats.timings_ms.refine = watch.lap();
