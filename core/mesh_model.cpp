@@ -9,6 +9,7 @@
 #include "core/base/stopwatch.hpp"
 #include "core/plane/input/validate_pslg.hpp"
 #include "core/plane/mesh_pslg.hpp"
+#include "core/plane/refine/local_sizes.hpp"
 #include "core/plane/symmetry/symmetrise.hpp"
 #include "core/solid/choose_fold.hpp"
 #include "core/solid/mesh_solid.hpp"
@@ -161,8 +162,10 @@ Result<MeshOutcome> mesh_model(const Model& model,
       SYMCELL_TRY(plane::validate_pslg(*pslg, context));
       return plane::symmetrise(*pslg, options, context);
     };
-    const auto mesh = [&](const plane::SymmetricPslg& symmetric) {
-      return plane::mesh_pslg(symmetric, options, context);
+    const auto mesh = [&](const plane::SymmetricPslg& symmetric) -> Result<MeshOutcome> {
+      const auto sizes = plane::resolve_sizes(*pslg, symmetric, options.sizes);
+      if (!sizes) return error_of(sizes);
+      return plane::mesh_pslg(symmetric, options, *sizes, context);
     };
     return run(symmetrise, mesh, options.strict, context);
   }

@@ -192,6 +192,10 @@ Result<void> set_min_angle(const OptionInfo& info, const OptionValue& value, Mes
   return {};
 }
 
+Result<void> set_min_edge(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
+  return set_bound(info, value, options.min_edge);
+}
+
 Result<void> set_radius_edge(const OptionInfo& info,
                              const OptionValue& value,
                              MeshOptions& options) {
@@ -293,6 +297,48 @@ Result<void> set_repair(const OptionInfo& info, const OptionValue& value, MeshOp
   return refuse(ErrorCode::kBadOption, info, value, "none, safe, all or wrap");
 }
 
+// "marker:3=0.5,vertex:17=0.02".
+std::optional<std::vector<SizeRequest>> as_sizes(const std::string& text) {
+  std::vector<SizeRequest> sizes;
+  std::string_view rest = text;
+  const auto taken = [&](std::string_view word) {
+    if (!rest.starts_with(word)) return false;
+    rest.remove_prefix(word.size());
+    return true;
+  };
+  const auto number = [&](auto& value) {
+    const auto [stop, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+    if (error != std::errc{}) return false;
+    rest.remove_prefix(static_cast<std::size_t>(stop - rest.data()));
+    return true;
+  };
+  do {
+    while (taken(" ")) continue;
+    SizeRequest request;
+    if (taken("vertex")) {
+      request.kind = SizeRequest::Kind::kVertex;
+    } else if (!taken("marker")) {
+      return std::nullopt;
+    }
+    const bool read = (taken(":") || taken(" ")) && number(request.id) && taken("=") &&
+                      number(request.size) && request.size > 0 && std::isfinite(request.size);
+    if (!read) return std::nullopt;
+    sizes.push_back(request);
+  } while (taken(","));
+  if (!rest.empty()) return std::nullopt;
+  return sizes;
+}
+
+Result<void> set_sizes(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
+  const auto sizes = value.kind == Kind::kText ? as_sizes(value.text) : std::nullopt;
+  if (!sizes) {
+    return refuse(ErrorCode::kBadOption, info, value,
+                  "largest edge lengths of markers and vertices, as marker:3=0.5,vertex:17=0.02");
+  }
+  options.sizes = *sizes;
+  return {};
+}
+
 using Json = nlohmann::ordered_json;
 
 Json bound_to_json(double bound) {
@@ -322,6 +368,17 @@ Json get_repair(const MeshOptions& o, ModelKind kind) {
 
 Json get_memory_limit(const MeshOptions& o, ModelKind) {
   return o.memory_limit_bytes == 0 ? Json(nullptr) : Json(o.memory_limit_bytes >> kMegabyteBits);
+}
+
+Json get_sizes(const MeshOptions& o, ModelKind) {
+  if (o.sizes.empty()) return nullptr;
+  std::string text;
+  for (const SizeRequest& s : o.sizes) {
+    if (!text.empty()) text += ',';
+    text += s.kind == SizeRequest::Kind::kVertex ? "vertex:" : "marker:";
+    text += std::to_string(s.id) + '=' + Json(s.size).dump();
+  }
+  return text;
 }
 
 // Options that are one member of MeshOptions, by the way they are checked.
@@ -407,6 +464,21 @@ constexpr auto kRows = std::to_array<OptionRow>({
         {"max_volume", "V", "", "solids: largest volume of an element, in model units cubed",
          kSolids}),
     bound_row<&MeshOptions::max_edge>({"max_edge", "L", "", "longest edge, in model units", kAll}),
+    {{"min_edge", "L", "",
+      "planar: refinement makes no edge shorter than this, in model units; what would need one is "
+      "exempt",
+      kPlanar},
+     set_min_edge,
+     [](const MeshOptions& o, ModelKind) {
+       return o.min_edge > 0 ? Json(o.min_edge) : Json(nullptr);
+     }},
+    {{"sizes", "marker:M=L,vertex:V=L", "",
+      "planar: longest edges on segments of a marker and at a vertex (from 0), in model units",
+      kPlanar},
+     set_sizes,
+     get_sizes},
+    flag_row<&MeshOptions::keep_boundary>(
+        {"keep_boundary", "", "", "planar: no new points on what bounds the domain", kPlanar}),
     flag_row<&MeshOptions::delaunay>(
         {"delaunay", "", "", "solids: a Delaunay mesh, at worse dihedral angles", kSolids}),
     {{"order", "1|2", "1", "1: linear elements; 2: quadratic, with mid-side nodes", kAll},

@@ -1,4 +1,5 @@
 // Whether options fit a kind of model, checked once the kind is known.
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -10,7 +11,7 @@ namespace {
 Failure not_of_kind(ModelKind kind, const std::string& name) {
   const std::string message =
       is_planar(kind)
-          ? " is for solid models; planar models take min_angle, max_area and max_edge"
+          ? " is for solid models; planar models take min_angle, max_area, max_edge and min_edge"
           : " is for planar models; solids take radius_edge, min_dihedral, max_volume and max_edge";
   return fail(ErrorCode::kBadOption, name + message, {}, "/options/" + name);
 }
@@ -24,6 +25,18 @@ Failure repair_is_for_surfaces() {
 
 Failure bad_axis(const std::string& name, const std::string& message) {
   return fail(ErrorCode::kBadAxis, message, {}, "/options/" + name);
+}
+
+// Dividing an edge that is too long makes halves of it.
+Result<void> check_edge_lengths(const MeshOptions& options) {
+  double longest = options.max_edge;
+  for (const SizeRequest& s : options.sizes) longest = std::min(longest, s.size);
+  if (options.min_edge <= 0.5 * longest) return {};
+  return fail(
+      ErrorCode::kBadOption,
+      "min_edge must be at most half of max_edge and of each of the sizes: edges that are too "
+      "long are divided in two",
+      {}, "/options/min_edge");
 }
 
 Result<MeshOptions> options_for_planar(MeshOptions options) {
@@ -51,6 +64,7 @@ Result<MeshOptions> options_for_planar(MeshOptions options) {
     }
     options.center = center;
   }
+  SYMCELL_TRY(check_edge_lengths(options));
   options.axis_origin.reset();
   options.axis_direction.reset();
   return options;
@@ -68,6 +82,9 @@ Result<MeshOptions> options_for_solid(ModelKind kind, MeshOptions options) {
   }
   if (options.min_angle_deg != standard.min_angle_deg) return not_of_kind(kind, "min_angle");
   if (std::isfinite(options.max_area)) return not_of_kind(kind, "max_area");
+  if (options.min_edge > 0) return not_of_kind(kind, "min_edge");
+  if (!options.sizes.empty()) return not_of_kind(kind, "sizes");
+  if (options.keep_boundary) return not_of_kind(kind, "keep_boundary");
   return options;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "core/geometry/point.hpp"
 
@@ -23,6 +24,15 @@ enum class Repair : std::uint8_t {
   kSafe,  // and what leaves the shape as it is, within the symmetry tolerance
   kAll,   // and holes are closed, parts below the tolerance dropped
   kWrap   // and where all that does not help the triangles are wrapped as they are
+};
+
+// A largest edge length where it is wanted.
+struct SizeRequest {
+  enum class Kind : std::uint8_t { kMarker, kVertex };
+  Kind kind = Kind::kMarker;
+  std::int64_t id = 0;  // a marker: of edges on its segments; a vertex: of edges at it, from 0
+  double size = 0;      // input units
+  friend bool operator==(const SizeRequest&, const SizeRequest&) = default;
 };
 
 // Values are what a user writes in `options`; infinities mean "no bound".
@@ -45,6 +55,9 @@ struct MeshOptions {
   Repair repair = Repair::kSafe;            // surfaces
   bool delaunay = false;                    // solids: end with a Delaunay mesh
   double max_edge = kInfinity;              // input units
+  double min_edge = 0;                      // input units; of edges that refinement makes
+  std::vector<SizeRequest> sizes;           // planar
+  bool keep_boundary = false;               // planar: no new points on what bounds the domain
   std::int32_t order = 1;                   // 1: linear, 2: quadratic with mid-side nodes
   std::uint64_t max_elements = 50'000'000;  // of the cell
   double time_limit_s = kInfinity;

@@ -1,8 +1,10 @@
 #include "core/plane/mesh_pslg.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/base/stopwatch.hpp"
 #include "core/cell/measure_cell.hpp"
@@ -30,6 +32,10 @@ constexpr double kSamplingAngleDeg = 38;  // below, samples are taken from the s
 // milliseconds each, and greedy coarsening ends in different places.
 constexpr std::size_t kSmallCell = 500;
 constexpr double kFurtherStartsDeg[] = {0, 0, 0, 1, 2, 3};
+// Where sizes decide the mesh, the angle hardly matters to the count, and chance does: starts for
+// what other bounds would be given keep the count from falling where the angle grows.
+constexpr double kFurtherStartsSizedDeg[] = {5, 10, 15, 20};
+constexpr double kHighestSizedStartDeg = 30;  // above, angles ask for more than sizes do
 
 // A bound on the area asks for at least area / bound triangles: refuse at once what cannot fit.
 Result<void> check_area_budget(const InitialTriangulation& start,
@@ -55,21 +61,30 @@ Result<void> check_area_budget(const InitialTriangulation& start,
 Result<void> count_exempt(const QuotientTriangulation& mesh,
                           const Criteria& criteria,
                           Statistics& statistics) {
-  std::uint64_t count[5] = {};
+  constexpr std::size_t kCounted = 6;  // reasons, none included
+  std::uint64_t count[kCounted + 1] = {};
   for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {
     if (!mesh.alive(t)) continue;
     const Assessment a = criteria.assess(mesh, mesh.triangle(t));
-    if (a.verdict == Verdict::kGood) continue;
-    const Exemption why = a.too_large ? Exemption::kNone : criteria.exemption(mesh, t, a);
-    if (why == Exemption::kNone) {
+    const bool short_edge = criteria.has_short_edge(mesh, mesh.triangle(t));
+    if (a.verdict == Verdict::kGood && !short_edge) continue;
+    Exemption why = a.too_large ? Exemption::kNone : criteria.exemption(mesh, t, a);
+    if (why == Exemption::kNone && criteria.may_leave_bad()) {
+      why = criteria.has_least_edge() ? Exemption::kMinEdge : Exemption::kKeptBoundary;
+    }
+    if (why == Exemption::kNone || short_edge) {
       return fail(ErrorCode::kInternal,
                   "triangle " + std::to_string(t) + " of the finished mesh breaks a bound");
     }
     ++count[static_cast<std::size_t>(why)];
   }
-  constexpr const char* kReasons[4] = {"", "small_input_angle", "across_small_input_angle",
-                                       "fold_angle_at_centre"};
-  for (std::size_t i = 1; i < 4; ++i) {
+  constexpr const char* kReasons[kCounted] = {"",
+                                              "small_input_angle",
+                                              "across_small_input_angle",
+                                              "fold_angle_at_centre",
+                                              "kept_boundary",
+                                              "min_edge"};
+  for (std::size_t i = 1; i < kCounted; ++i) {
     if (count[i] > 0) statistics.exempt.push_back({kReasons[i], count[i]});
   }
   return {};
@@ -98,11 +113,28 @@ Result<WorkDone> refine_and_coarsen(QuotientTriangulation& mesh,
   return WorkDone{refiner.counters(), coarsener.counters(), editor.counters()};
 }
 
-bool has_bad_triangle(const QuotientTriangulation& mesh, const Criteria& criteria) {
+std::size_t count_bad(const QuotientTriangulation& mesh, const Criteria& criteria) {
+  std::size_t count = 0;
   for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {
-    if (mesh.alive(t) && criteria.is_bad(mesh, t)) return true;
+    count += mesh.alive(t) && criteria.is_bad(mesh, t) ? 1 : 0;
   }
-  return false;
+  return count;
+}
+
+// A further start is given up where refinement, which coarsening follows, makes this many times the
+// triangles of the best mesh: a higher bound may ask for a million where the one asked for needs none.
+constexpr std::size_t kHopeless = 8;
+
+std::vector<double> bounds_of_further_starts(const MeshOptions& options, bool sized) {
+  std::vector<double> bounds;
+  for (const double higher : kFurtherStartsDeg) {
+    bounds.push_back(std::min(options.min_angle_deg + higher, kMaxMinAngleDeg));
+  }
+  for (const double higher : kFurtherStartsSizedDeg) {
+    const double bound = options.min_angle_deg + higher;
+    if (sized && bound <= kHighestSizedStartDeg) bounds.push_back(bound);
+  }
+  return bounds;
 }
 
 // From the initial triangulation again, with other samples, where a run cascades; and a few times
@@ -110,40 +142,54 @@ bool has_bad_triangle(const QuotientTriangulation& mesh, const Criteria& criteri
 Result<WorkDone> refine_from_starts(InitialTriangulation& start,
                                     Criteria& criteria,
                                     const MeshOptions& options,
+                                    const LocalSizes& sizes,
                                     Point2 centre,
                                     ExecutionContext& context) {
-  const auto attempt = [&](QuotientTriangulation& mesh, Criteria& own, int number) {
+  constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+  const auto attempt = [&](QuotientTriangulation& mesh, Criteria& own, int number,
+                           std::size_t most) {
     const bool sample =
         !options.plain && (number > 0 || options.min_angle_deg >= kSamplingAngleDeg);
     return refine_and_coarsen(mesh, own,
                               {centre, !options.plain, sample ? kSamples : 0,
-                               options.seed + static_cast<std::uint64_t>(number)},
+                               options.seed + static_cast<std::uint64_t>(number), most},
                               context);
   };
   const QuotientTriangulation initial = start.mesh;
   const Criteria initial_criteria = criteria;
   int number = 0;
-  auto best = attempt(start.mesh, criteria, number++);
+  auto best = attempt(start.mesh, criteria, number++, kAny);
   while (!best) {
     const bool cascaded = best.error().code == ErrorCode::kBoundUnreachable;
     if (!cascaded || options.plain || number == kAttempts) return best;
     start.mesh = initial;
     criteria = initial_criteria;
-    best = attempt(start.mesh, criteria, number++);
+    best = attempt(start.mesh, criteria, number++, kAny);
   }
-  if (options.plain || start.mesh.triangle_count() > kSmallCell) return best;
-  for (const double higher : kFurtherStartsDeg) {
+  const bool untouched = best->refined.inserted == 0;
+  if (options.plain || untouched || start.mesh.triangle_count() > kSmallCell) return best;
+  std::size_t least_bad = count_bad(start.mesh, criteria);  // 0 unless edges have a least length
+  for (const double bound : bounds_of_further_starts(options, criteria.has_size_bound())) {
     MeshOptions tighter = options;
-    tighter.min_angle_deg = std::min(options.min_angle_deg + higher, kMaxMinAngleDeg);
+    tighter.min_angle_deg = bound;
     QuotientTriangulation mesh = initial;
-    Criteria own(mesh, start.subdomains, tighter);
-    auto work = attempt(mesh, own, number++);
-    if (!work && work.error().code != ErrorCode::kBoundUnreachable) return work;
-    if (!work || mesh.triangle_count() >= start.mesh.triangle_count()) continue;
+    Criteria own(mesh, start.subdomains, tighter, sizes);
+    const std::size_t most = kHopeless * start.mesh.triangle_count();
+    auto work = attempt(mesh, own, number++, most);
+    if (!work) {
+      const bool given_up =
+          work.error().code == ErrorCode::kBoundUnreachable ||
+          (work.error().code == ErrorCode::kElementLimit && mesh.triangle_count() > most);
+      if (!given_up) return work;
+      continue;
+    }
     // What a higher bound exempts, the one asked for may not.
     Criteria asked = initial_criteria;
     asked.adopt_segment_ends(own);
-    if (has_bad_triangle(mesh, asked)) continue;
+    const std::size_t bad = count_bad(mesh, asked);
+    const std::size_t triangles = mesh.triangle_count();
+    if (std::pair(bad, triangles) >= std::pair(least_bad, start.mesh.triangle_count())) continue;
+    least_bad = bad;
     start.mesh = std::move(mesh);
     criteria = std::move(asked);
     best = std::move(work);
@@ -177,6 +223,7 @@ void record(const WorkDone& work,
 
 Result<MeshOutcome> mesh_pslg(const SymmetricPslg& symmetric,
                               const MeshOptions& options,
+                              const LocalSizes& sizes,
                               ExecutionContext& context) {
   MeshOutcome outcome;
   Statistics& stats = outcome.statistics;
@@ -187,9 +234,9 @@ Result<MeshOutcome> mesh_pslg(const SymmetricPslg& symmetric,
   stats.timings_ms.initial = watch.lap();
 
   const SegmentCover wanted = measure_segment_cover(start->mesh);
-  Criteria criteria(start->mesh, start->subdomains, options);
+  Criteria criteria(start->mesh, start->subdomains, options, sizes);
   SYMCELL_TRY(check_area_budget(*start, criteria, context));
-  const auto work = refine_from_starts(*start, criteria, options, symmetric.centre, context);
+  const auto work = refine_from_starts(*start, criteria, options, sizes, symmetric.centre, context);
   if (!work) return error_of(work);
   record(*work, start->mesh, symmetric.orbit_points.size(), stats.refinement);
   stats.timings_ms.refine = watch.lap();

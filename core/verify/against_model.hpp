@@ -110,6 +110,17 @@ std::vector<char> check_model(const FacetedMesh& full,
                               double diameter,
                               Checks& checks);
 
+struct AngleBound {
+  double min_angle_deg = 0;
+  double place = 0;  // distance at which a node is at the centre
+};
+// full.min_angle: angles below the bound are those that the model forces: in corners of it that are
+// narrower, across them, and at the centre that of 360/n.  Requires: a planar mesh.
+void check_angles(const FacetedMesh& full,
+                  const std::vector<char>& constrained,
+                  const AngleBound& bound,
+                  Checks& checks);
+
 struct RegionSeed {
   Point3 point;
   std::int32_t attribute = 0;

@@ -162,7 +162,9 @@ class Verifier {
     internal::check_hanging_nodes(full, apart_, checks_);
     check_pieces(full);
     check_measure(mesh);
-    internal::tell_delaunay(full, check_full_model(full), checks_);
+    const std::vector<char> constrained = check_full_model(full);
+    internal::tell_delaunay(full, constrained, checks_);
+    check_angles(full, constrained);
   }
 
   // Regions of a model need not be copies of each other, if they were ignored: then they are
@@ -210,6 +212,15 @@ class Verifier {
     checks_.add(plane() ? "model.area" : "model.volume", std::abs(found - *wanted) <= allowed,
                 shown(found) + ", the model's " + shown(*wanted) + ", off by " +
                     shown(std::abs(found - *wanted)));
+  }
+
+  void check_angles(const FacetedMesh& full, const std::vector<char>& constrained) {
+    if (!options_.min_angle_deg) return;
+    if (!model_known_ || !plane()) {
+      checks_.skip("full.min_angle", plane() ? "no model was given" : "the mesh is no planar one");
+      return;
+    }
+    internal::check_angles(full, constrained, {*options_.min_angle_deg, tolerance_}, checks_);
   }
 
   std::vector<char> check_full_model(const FacetedMesh& full) {

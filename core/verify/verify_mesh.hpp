@@ -17,6 +17,8 @@
 //                           pinches, which the program computes from the model alone
 //   cell.quality            angles and radius-edge ratio (reported only)
 //   full.delaunay           share of free facets that are locally Delaunay (reported only)
+//   full.min_angle          planar, if the bound is given: angles below it are forced by the model,
+//                           at the centre that of 360/n only
 //   full.hanging_nodes      no node lies in a boundary facet that it is no corner of
 //
 // The symmetry:
@@ -92,6 +94,7 @@ struct VerifyOptions {
   // kSurfaceSymmetryToleranceRel, of a PSLG or PLC four times the model's own asymmetry, which is
   // nothing where the fold is 1. Never less than rounding, nor in space than the resolution.
   std::optional<double> model_tolerance_rel;
+  std::optional<double> min_angle_deg;  // planar: the bound that the mesh was made with
   std::optional<double> model_measure;  // area or volume; nullopt: computed from the model
   std::size_t most_restored_nodes = 200'000'000;  // beyond: full.* without a file are skipped
 };

@@ -19,6 +19,7 @@ Exit status: 0 all checks hold, 1 a check fails, 2 wrong usage, 3 a file is not 
 
 Examples:
   symcell verify cell.vtu --full full.vtu --model gear.json
+  symcell verify cell.vtu --model gear.json --min-angle 30
   symcell verify cell.vtu --json | jq '.checks[] | select(.status == "fail")'
 )";
 
@@ -28,6 +29,7 @@ struct VerifyArguments {
   std::string model;
   double tolerance = VerifyOptions{}.tolerance_rel;
   std::optional<double> model_tolerance;
+  std::optional<double> min_angle;
   bool json = false;
   bool quiet = false;
   bool json_errors = false;
@@ -74,6 +76,7 @@ Result<bool> verify(const VerifyArguments& arguments) {
   VerifyOptions options;
   options.tolerance_rel = arguments.tolerance;
   options.model_tolerance_rel = arguments.model_tolerance;
+  options.min_angle_deg = arguments.min_angle;
   if (!arguments.model.empty()) {
     Result<Model> read = read_model_file(arguments.model);
     if (!read) return error_of(read);
@@ -108,6 +111,13 @@ void add_verify_command(CLI::App& app, int& exit_code) {
                    "asymmetry; STL and its like 1e-3]")
       ->type_name("T")
       ->check(CLI::Range(0.0, 0.1));
+  command
+      ->add_option(
+          "--min-angle", arguments->min_angle,
+          "planar, with --model: the bound in degrees that all angles keep but those which "
+          "the model forces")
+      ->type_name("DEG")
+      ->check(CLI::Range(0.0, kMaxMinAngleDeg));
   command->add_flag("--json", arguments->json, "the report as JSON");
   command->add_flag("-q,--quiet", arguments->quiet, "print failures only");
   command->add_flag("--json-errors", arguments->json_errors,

@@ -450,16 +450,26 @@ class LawChecker {
 
   [[nodiscard]] bool is_exempt(std::size_t t) const {
     const double bound = options_.min_angle_deg + kNarrowTolerance;
+    const double sector = 360.0 / cell_.fold;
+    const Point2 centre{cell_.axis_origin.x, cell_.axis_origin.y};
     for (std::size_t i = 0; i < 3; ++i) {
       const std::int32_t node = mesh_.triangles[t][i];
-      if (is_input_[idx(node)] != 0 && meshed_angle(t, i) < bound) return true;
-      const Point2 centre{cell_.axis_origin.x, cell_.axis_origin.y};
-      if (360.0 / cell_.fold < bound &&
-          distance(mesh_.at(node), centre) <= kPlaceTolerance * diameter_) {
-        return true;
-      }
+      const bool at_centre = distance(mesh_.at(node), centre) <= kPlaceTolerance * diameter_;
+      // Between copies of one segment the input asks for no angle but the fold's.
+      const double narrow = at_centre ? std::min(bound, sector - kNarrowTolerance) : bound;
+      if (is_input_[idx(node)] != 0 && meshed_angle(t, i) < narrow) return true;
+      if (at_centre && sector < bound && fills_sector(t, i, sector)) return true;
     }
     return spans_narrow_corner(t, bound);
+  }
+
+  // Nothing at the centre forces an angle below 360/n there, nor one elsewhere below that of the
+  // triangle (centre, a, Ra).
+  [[nodiscard]] bool fills_sector(std::size_t t, std::size_t at_centre, double sector) const {
+    const double others = std::min(options_.min_angle_deg, (180 - sector) / 2);
+    return corner_angle(t, at_centre) >= sector - kNarrowTolerance &&
+           corner_angle(t, (at_centre + 1) % 3) >= others - kNarrowTolerance &&
+           corner_angle(t, (at_centre + 2) % 3) >= others - kNarrowTolerance;
   }
 
   // Whether the shortest edge runs between two segments that meet in a narrow corner, its ends

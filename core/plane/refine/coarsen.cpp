@@ -57,7 +57,7 @@ std::vector<VertexId> Coarsener::visiting_order() const {
 }
 
 Result<void> Coarsener::run() {
-  if (criteria_.goal_angle() <= 0) return {};
+  if (!criteria_.has_bound()) return {};
   const std::vector<VertexId> order = visiting_order();
   const std::size_t points = order.size();
   if (points == 0) return {};

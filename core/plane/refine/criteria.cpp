@@ -14,6 +14,9 @@ namespace {
 // themselves are a factor of two apart.
 constexpr double kShellRatio = 1e-3;
 
+// The square of a length just inside a bound must not round to one outside.
+constexpr double kLengthSafety = 1e-12;
+
 double angle_between(Point2 from, Point2 to) {
   const double a = std::atan2(cross(from, to), dot(from, to));
   return a < 0 ? a + 2 * std::numbers::pi : a;
@@ -23,15 +26,19 @@ double angle_between(Point2 from, Point2 to) {
 
 Criteria::Criteria(const QuotientTriangulation& mesh,
                    const std::vector<SubdomainOrbit>& subdomains,
-                   const MeshOptions& options) {
+                   const MeshOptions& options,
+                   const LocalSizes& sizes)
+    : keep_boundary_(options.keep_boundary),
+      has_local_sizes_(!sizes.of_segment.empty() || !sizes.at_vertex.empty()),
+      sizes_(sizes) {
   const double bound = options.min_angle_deg > 0 ? options.min_angle_deg + kAngleMarginDeg : 0;
   goal_angle_ = bound * kRadiansADegree;
   cos2_goal_ = bound > 0 ? std::cos(goal_angle_) * std::cos(goal_angle_) : 2.0;
   cos_lens_ = std::cos(2 * std::max(goal_angle_, kLeastLensDeg * kRadiansADegree));
   shell_angle_ = std::max(kShellAngleDeg * kRadiansADegree, kShellFactor * goal_angle_);
-  // The square of a length just inside the bound must not round to one outside.
-  max_edge2_ = options.max_edge * options.max_edge * (1 - 1e-12);
-  has_size_bound_ = options.max_edge < kInfinity;
+  max_edge2_ = options.max_edge * options.max_edge * (1 - kLengthSafety);
+  min_edge2_ = options.min_edge * options.min_edge * (1 + kLengthSafety);
+  has_size_bound_ = options.max_edge < kInfinity || has_local_sizes_;
   for (const SubdomainOrbit& s : subdomains) {
     max_area_.push_back(std::min(options.max_area, s.max_area));
     has_size_bound_ = has_size_bound_ || max_area_.back() < kInfinity;
@@ -42,6 +49,10 @@ Criteria::Criteria(const QuotientTriangulation& mesh,
   find_corners(mesh);
 }
 
+double Criteria::star_angle() const {
+  return std::max(goal_angle_, kLeastStarDeg * kRadiansADegree);
+}
+
 void Criteria::find_corners(const QuotientTriangulation& mesh) {
   acute_.assign(mesh.vertex_slots(), 0);
   // Each corner of the input begins at a triangle whose clockwise side at the vertex is a segment,
@@ -49,7 +60,8 @@ void Criteria::find_corners(const QuotientTriangulation& mesh) {
   for (TriangleId t = 0; t < mesh.triangle_slots(); ++t) {
     if (!mesh.alive(t)) continue;
     for (std::uint32_t i = 0; i < 3; ++i) {
-      if (mesh.triangle(t).seg[prev3(i)] == kNoSubsegment) continue;
+      const SubsegmentId first = mesh.triangle(t).seg[prev3(i)];
+      if (first == kNoSubsegment) continue;
       const VertexId v = mesh.triangle(t).v[i];
       StarItem item = star_item(mesh, 3 * t + i);
       const auto direction = [&](std::uint32_t which) {
@@ -60,7 +72,10 @@ void Criteria::find_corners(const QuotientTriangulation& mesh) {
       while (mesh.triangle(item.t).seg[next3(item.i)] == kNoSubsegment) {
         if (!rotate_ccw(mesh, item)) break;
       }
-      add_corner(mesh, v, from, direction(2));
+      // Between a segment at the centre and its own next copy: the fold's angle, not the input's.
+      const bool whole_sector =
+          v == mesh.centre() && first == mesh.triangle(item.t).seg[next3(item.i)];
+      if (!whole_sector) add_corner(mesh, v, from, direction(2));
     }
   }
   std::sort(narrow_.begin(), narrow_.end(),
@@ -103,7 +118,40 @@ Assessment Criteria::assess(Point2 a, Point2 b, Point2 c, std::int32_t face) con
 }
 
 Assessment Criteria::assess(const QuotientTriangulation& mesh, const Triangle& t) const {
-  return assess(mesh.corner_point(t, 0), mesh.corner_point(t, 1), mesh.corner_point(t, 2), t.face);
+  Assessment result =
+      assess(mesh.corner_point(t, 0), mesh.corner_point(t, 1), mesh.corner_point(t, 2), t.face);
+  for (std::uint32_t j = 0; has_local_sizes_ && !result.too_large && j < 3; ++j) {
+    result.too_large = edge_too_long(mesh, t, j);
+  }
+  if (result.too_large && result.verdict == Verdict::kGood) result.verdict = Verdict::kSize;
+  return result;
+}
+
+bool Criteria::edge_too_long(const QuotientTriangulation& mesh,
+                             const Triangle& t,
+                             std::uint32_t j) const {
+  double limit2 = max_edge2_;
+  if (has_local_sizes_) {
+    double limit = std::min(max_edge_at(t.v[next3(j)]), max_edge_at(t.v[prev3(j)]));
+    if (t.seg[j] != kNoSubsegment && !sizes_.of_segment.empty()) {
+      const auto parent = static_cast<std::size_t>(mesh.subsegment(t.seg[j]).parent);
+      limit = std::min(limit, sizes_.of_segment[parent]);
+    }
+    limit2 = std::min(limit2, limit * limit * (1 - kLengthSafety));
+  }
+  return squared_distance(mesh.corner_point(t, next3(j)), mesh.corner_point(t, prev3(j))) > limit2;
+}
+
+bool Criteria::has_short_edge(const QuotientTriangulation& mesh, const Triangle& t) const {
+  if (!has_least_edge()) return false;
+  const auto given = [&](std::uint32_t i) { return mesh.kind(t.v[i]) == VertexKind::kInput; };
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const std::uint32_t j = next3(i);
+    if (given(i) && given(j)) continue;
+    if (squared_distance(mesh.corner_point(t, i), mesh.corner_point(t, j)) < min_edge2_)
+      return true;
+  }
+  return false;
 }
 
 bool Criteria::in_narrow_corner(const QuotientTriangulation& mesh,
@@ -169,12 +217,8 @@ Exemption Criteria::exemption(const QuotientTriangulation& mesh,
   for (std::uint32_t i = 0; i < 3; ++i) {
     if (in_narrow_corner(mesh, t, i)) return Exemption::kSmallInputAngle;
   }
-  if (centre_is_narrow_ || centre_is_exact_) {
-    for (const VertexId v : t.v) {
-      if (v != mesh.centre()) continue;
-      if (centre_is_narrow_) return Exemption::kFoldAngleAtCentre;
-      if (is_self_adjacent(t, id)) return Exemption::kMet;
-    }
+  if ((centre_is_narrow_ || centre_is_exact_) && is_self_adjacent(t, id)) {
+    return centre_is_narrow_ ? Exemption::kFoldAngleAtCentre : Exemption::kMet;
   }
   if (is_seditious(mesh, t, assessment)) return Exemption::kSeditious;
   return Exemption::kNone;

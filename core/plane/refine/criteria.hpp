@@ -5,7 +5,8 @@
 //
 // Exempt are only triangles whose bound the input itself forbids: those in a corner of the input
 // that is narrower than the bound, those whose shortest edge spans such a corner ("seditious",
-// [Miller-Pav-Walkington03]), and those at the centre where 360/n is below the bound.
+// [Miller-Pav-Walkington03]), and, where 360/n is below the bound, the triangle (o, a, Ra) at the
+// centre, whose other two angles are near 90 degrees.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include "core/model/mesh_options.hpp"
 #include "core/plane/initial/initial_triangulation.hpp"
 #include "core/plane/quotient/quotient_triangulation.hpp"
+#include "core/plane/refine/local_sizes.hpp"
 
 namespace symcell::plane {
 
@@ -24,6 +26,8 @@ inline constexpr double kShellAngleDeg = 60.0;
 // For bounds below this, lenses are those of this bound: a flatter lens would let points lie next
 // to segments, and edges shrink, although no angle asks for it.
 inline constexpr double kLeastLensDeg = 20.0;
+// Points are moved for stars of at least this angle.
+inline constexpr double kLeastStarDeg = 1.0;
 // So are corners below this many angle bounds: they take two triangles, whose angles leave their
 // sides hardly any freedom to differ in length (measured: without, an 87 degree corner cascades at
 // 40).
@@ -34,7 +38,9 @@ enum class Exemption : std::uint8_t {
   kNone,
   kSmallInputAngle,
   kSeditious,
-  kFoldAngleAtCentre,
+  kFoldAngleAtCentre,  // (o, a, Ra) where 360/n is below the bound
+  kKeptBoundary,       // would need a point on a segment that `keep_boundary` keeps
+  kMinEdge,            // would need an edge shorter than `min_edge`
   kMet  // (o, a, Ra) where 360/n is the bound itself: keeps it, though not the margin
 };
 
@@ -51,7 +57,8 @@ class Criteria {
  public:
   Criteria(const QuotientTriangulation& mesh,
            const std::vector<SubdomainOrbit>& subdomains,
-           const MeshOptions& options);
+           const MeshOptions& options,
+           const LocalSizes& sizes = {});
 
   // Angle and size of a stored triangle, exemptions not looked at.
   [[nodiscard]] Assessment assess(const QuotientTriangulation& mesh, const Triangle& t) const;
@@ -61,25 +68,49 @@ class Criteria {
   [[nodiscard]] Exemption exemption(const QuotientTriangulation& mesh,
                                     TriangleId t,
                                     const Assessment& assessment) const;
-  // Whether the input has places where a triangle may be exempt.
+  // Whether the input or an option has places where a triangle may be exempt.
   [[nodiscard]] bool exempts_any() const {
-    return !narrow_.empty() || centre_is_narrow_ || centre_is_exact_;
+    return !narrow_.empty() || centre_is_narrow_ || centre_is_exact_ || may_leave_bad();
   }
-  // Bad and not exempt.
+  // Bad and not exempt, or with an edge that refinement must not make. A triangle left as it is because
+  // its improvement would take too short an edge counts as bad: nothing may make another one like it.
   [[nodiscard]] bool is_bad(const QuotientTriangulation& mesh, TriangleId t) const {
     const Assessment a = assess(mesh, mesh.triangle(t));
-    return a.too_large ||
+    return a.too_large || has_short_edge(mesh, mesh.triangle(t)) ||
            (a.verdict == Verdict::kAngle && exemption(mesh, t, a) == Exemption::kNone);
   }
+
+  // Whether something forbids points that the bounds would need: then what cannot be improved stays as
+  // it is, and is exempt.
+  [[nodiscard]] bool may_leave_bad() const { return has_least_edge() || keep_boundary_; }
+  [[nodiscard]] bool keeps_boundary() const { return keep_boundary_; }
+  // Whether edges have a least length. Then every change is looked at before it is kept.
+  [[nodiscard]] bool has_least_edge() const { return min_edge2_ > 0; }
+  [[nodiscard]] double min_edge2() const { return min_edge2_; }
+  // Whether an edge at a Steiner point is shorter than that.
+  [[nodiscard]] bool has_short_edge(const QuotientTriangulation& mesh, const Triangle& t) const;
+  // Whether stars made anew may break a bound that the search for their places does not know.
+  [[nodiscard]] bool must_look_at_stars() const { return has_size_bound_ || has_least_edge(); }
 
   // Whether p sees segment ab under an angle of at least 180 degrees minus twice the bound, that
   // is, lies in its diametral lens [Shewchuk02].
   [[nodiscard]] bool in_lens(Point2 a, Point2 b, Point2 p) const;
-  [[nodiscard]] bool segment_too_long(Point2 a, Point2 b) const {
-    return squared_distance(a, b) > max_edge2_;
+  // Whether edge j is longer than the bound for all, its segment's or its ends'.
+  [[nodiscard]] bool edge_too_long(const QuotientTriangulation& mesh,
+                                   const Triangle& t,
+                                   std::uint32_t j) const;
+  // How long edges at a vertex may be, inf: no bound but that for all.
+  [[nodiscard]] double max_edge_at(VertexId v) const {
+    return static_cast<std::size_t>(v) < sizes_.at_vertex.size()
+               ? sizes_.at_vertex[static_cast<std::size_t>(v)]
+               : kInfinity;
   }
 
   [[nodiscard]] double goal_angle() const { return goal_angle_; }  // radians
+  // What stars made anew keep: where no angle is asked for, enough to be worth a move.
+  [[nodiscard]] double star_angle() const;
+  // Whether anything is asked for that moving and merging points could save triangles of.
+  [[nodiscard]] bool has_bound() const { return goal_angle_ > 0 || has_size_bound_; }
   [[nodiscard]] double max_area(std::int32_t face) const {
     return max_area_[static_cast<std::size_t>(face)];
   }
@@ -135,6 +166,10 @@ class Criteria {
   double shell_angle_ = 0;
   double cos_lens_ = 1;  // cos of twice the bound
   double max_edge2_ = 0;
+  double min_edge2_ = 0;
+  bool keep_boundary_ = false;
+  bool has_local_sizes_ = false;
+  LocalSizes sizes_;
   bool has_size_bound_ = false;
   bool centre_is_narrow_ = false;
   bool centre_is_exact_ = false;

@@ -101,8 +101,9 @@ bool FeasibleRegion::start(const std::vector<StarEdge>& edges, Point2 origin) {
   polygon_.assign({middle + 0.5 * tangent * n, middle + r * d + low * n, middle + r * d + high * n,
                    middle - r * d + high * n, middle - r * d + low * n});
   if (e.max_area < kInfinity && !clip(n, dot(n, middle) + 2 * e.max_area)) return false;
-  if (max_edge2_ < kInfinity) {
-    for (const StarEdge& s : edges) discs_.push_back({s.a - origin, max_edge_});
+  for (const StarEdge& s : edges) {
+    const double reach = std::min(s.reach, max_edge_);
+    if (reach < kInfinity) discs_.push_back({s.a - origin, reach});
   }
   return true;
 }
@@ -203,6 +204,7 @@ std::optional<Point2> FeasibleRegion::find_on_line(const std::vector<StarEdge>& 
       disc(e.a, max_edge_);
       disc(e.b, max_edge_);
     }
+    if (e.reach < kInfinity) disc(e.a, e.reach);
     if (!(low < high)) return std::nullopt;
   }
   return p + 0.5 * (low + high) * d;

@@ -21,6 +21,7 @@ struct StarEdge {
   Point2 a;
   Point2 b;
   double max_area = kInfinity;
+  double reach = kInfinity;  // how far x may be from a, where that is less than the edge bound
 };
 
 class FeasibleRegion {

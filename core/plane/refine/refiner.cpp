@@ -10,7 +10,7 @@
 namespace symcell::plane {
 namespace {
 
-// An angle bound is out of reach where edges this much shorter than the shortest edge of the
+// An angle bound is out of reach where edges this much shorter than the smallest feature of the
 // initial triangulation appear: fair grading stays orders of magnitude above it, a cascade falls
 // below within a few hundred steps.
 constexpr double kCascadeRatio = 1e-5;
@@ -28,6 +28,21 @@ constexpr double kSampleReach = 1.5;
 constexpr std::uint8_t kQueued = 1;
 constexpr std::uint8_t kForced = 2;
 
+// The distance from a corner to the subsegment opposite it, squared, where its foot lies within:
+// gaps between segments may be far smaller than all edges.
+double squared_gap(const QuotientTriangulation& mesh, const Triangle& t) {
+  double least2 = std::numeric_limits<double>::infinity();
+  for (std::uint32_t j = 0; j < 3; ++j) {
+    if (t.seg[j] == kNoSubsegment) continue;
+    const Point2 p = mesh.corner_point(t, j);
+    const Point2 a = mesh.corner_point(t, next3(j)), b = mesh.corner_point(t, prev3(j));
+    if (dot(p - a, b - a) <= 0 || dot(p - b, a - b) <= 0) continue;
+    const double doubled = cross(b - a, p - a);
+    least2 = std::min(least2, doubled * doubled / squared_distance(a, b));
+  }
+  return least2;
+}
+
 }  // namespace
 
 Refiner::Refiner(Editor& editor,
@@ -38,7 +53,7 @@ Refiner::Refiner(Editor& editor,
       mesh_(editor.mesh()),
       criteria_(criteria),
       settings_(settings),
-      relocate_(settings.relocate && criteria.goal_angle() > 0),
+      relocate_(settings.relocate && criteria.has_bound()),
       context_(context),
       random_(settings.seed),
       surgery_(editor, criteria) {
@@ -46,7 +61,8 @@ Refiner::Refiner(Editor& editor,
   for (TriangleId t = 0; t < mesh_.triangle_slots(); ++t) {
     if (!mesh_.alive(t)) continue;
     const Triangle& tri = mesh_.triangle(t);
-    shortest2 = std::min(shortest2, criteria_.assess(mesh_, tri).shortest2);
+    shortest2 =
+        std::min({shortest2, criteria_.assess(mesh_, tri).shortest2, squared_gap(mesh_, tri)});
     for (const VertexId v : tri.v) extent = std::max(extent, length(mesh_.point(v)));
   }
   const double cascade = kCascadeRatio * std::sqrt(shortest2);
@@ -60,6 +76,9 @@ Result<void> Refiner::tick() {
   const auto elements = static_cast<std::uint64_t>(mesh_.triangle_count());
   const double waiting = static_cast<double>(queue_.size());
   const double quality = std::max(0.0, 1.0 - waiting / static_cast<double>(elements));
+  if (elements > settings_.most_triangles) {
+    return fail(ErrorCode::kElementLimit, "more triangles than this start may have");
+  }
   context_.report(Phase::kRefine, 0.1 + 0.6 * quality, elements, quality);
   return context_.check(elements);
 }
@@ -72,7 +91,7 @@ void Refiner::enqueue_subsegment(SubsegmentId s) {
 
 void Refiner::look_at_subsegment(SubsegmentId s) {
   Subsegment& seg = mesh_.subsegment(s);
-  if (seg.queued != 0 || !encroached(s)) return;
+  if (seg.queued != 0 || !encroached(s) || !may_split(s)) return;
   seg.queued = kQueued;
   segments_.push_back(s);
 }
@@ -83,8 +102,9 @@ bool Refiner::encroached(SubsegmentId s) const {
   const Triangle& t = mesh_.triangle(triangle_of(h));
   const std::uint32_t j = local_of(h);
   const Point2 a = mesh_.corner_point(t, next3(j)), b = mesh_.corner_point(t, prev3(j));
-  if (criteria_.segment_too_long(a, b)) return true;
-  if (relocate_) return false;  // what a lens would catch is a bad triangle too: treated as such
+  if (criteria_.edge_too_long(mesh_, t, j)) return true;
+  // What a lens would catch is a bad triangle too, treated as such, or no angle is asked for.
+  if (relocate_ || criteria_.goal_angle() <= 0) return false;
   if (criteria_.in_lens(a, b, mesh_.corner_point(t, j))) return true;
   const HalfEdge g = t.nb[j];
   if (g == kNoHalfEdge) return false;
@@ -159,15 +179,51 @@ Result<void> Refiner::split_queued_subsegments() {
   while (!segments_.empty()) {
     const SubsegmentId s = segments_.back();
     segments_.pop_back();
+    if (static_cast<std::size_t>(s) >= mesh_.subsegment_slots()) continue;  // of a split taken back
     Subsegment& seg = mesh_.subsegment(s);
     if (!seg.alive || seg.queued == 0) continue;
     const bool forced = (seg.queued & kForced) != 0;
     seg.queued = 0;
     if (!forced && !encroached(s)) continue;
     SYMCELL_TRY(tick());
-    SYMCELL_TRY(split(s));
+    if (criteria_.may_leave_bad()) {
+      split_if_allowed(s);
+    } else {
+      SYMCELL_TRY(split(s));
+    }
   }
   return {};
+}
+
+bool Refiner::may_split(SubsegmentId s) const {
+  if (criteria_.keeps_boundary()) {
+    const HalfEdge h = mesh_.subsegment(s).half_edge;
+    if (mesh_.triangle(triangle_of(h)).nb[local_of(h)] == kNoHalfEdge) return false;
+  }
+  const auto at = static_cast<std::size_t>(s);
+  return at >= refused_.size() || refused_[at] == 0;
+}
+
+// Splits a subsegment unless that makes an edge too short, or cannot be done: then it stays for good.
+void Refiner::split_if_allowed(SubsegmentId s) {
+  if (!may_split(s)) return;
+  mesh_.begin();
+  const RefineCounters counted = counters_;
+  if (split(s) && !made_short_edge()) {
+    mesh_.commit();
+    return;
+  }
+  mesh_.roll_back();
+  counters_ = counted;
+  if (static_cast<std::size_t>(s) >= refused_.size()) refused_.resize(mesh_.subsegment_slots(), 0);
+  refused_[static_cast<std::size_t>(s)] = 1;
+}
+
+bool Refiner::made_short_edge() const {
+  for (const TriangleId t : editor_.created()) {
+    if (mesh_.alive(t) && criteria_.has_short_edge(mesh_, mesh_.triangle(t))) return true;
+  }
+  return false;
 }
 
 // Free vertices inside the diametral circle would be too near to the new vertex: delete them
@@ -253,6 +309,11 @@ Refiner::Outcome Refiner::treat(TriangleId t) {
   if (!a.too_large && criteria_.exemption(mesh_, t, a) != Exemption::kNone) {
     return Outcome::kExempt;
   }
+  const Outcome outcome = improve(t, a);
+  return outcome == Outcome::kStuck && criteria_.may_leave_bad() ? Outcome::kExempt : outcome;
+}
+
+Refiner::Outcome Refiner::improve(TriangleId t, const Assessment& a) {
   if (a.shortest2 < shortest_allowed2_) return Outcome::kStuck;
   if (relocate_ && a.verdict == Verdict::kAngle && relocate_corner_of(t)) return Outcome::kDone;
   if (settings_.samples > 0 && a.verdict == Verdict::kAngle && insert_sampled(t, a)) {
@@ -297,17 +358,21 @@ Point2 Refiner::off_centre(TriangleId t, const Assessment& assessment, bool fart
   return squared_distance(off, half) < squared_distance(centre, half) ? a + off : a + centre;
 }
 
-bool Refiner::encroaches(const Cavity& cavity, Point2 x) {
-  bool any = false;
+// Which subsegments of a cavity's boundary x encroaches on; they are queued to be split, unless one of
+// them must not be.
+Refiner::Encroachment Refiner::encroachment(const Cavity& cavity, Point2 x) {
+  encroached_.clear();
   for (const CavityEdge& e : cavity.edges) {
     if (e.seg == kNoSubsegment) continue;
-    if (criteria_.in_lens(mesh_.lift(e.a.orbit, e.a.exponent), mesh_.lift(e.b.orbit, e.b.exponent),
-                          x)) {
-      enqueue_subsegment(e.seg);
-      any = true;
+    if (!criteria_.in_lens(mesh_.lift(e.a.orbit, e.a.exponent), mesh_.lift(e.b.orbit, e.b.exponent),
+                           x)) {
+      continue;
     }
+    if (!may_split(e.seg)) return Encroachment::kRefused;
+    encroached_.push_back(e.seg);
   }
-  return any;
+  for (const SubsegmentId s : encroached_) enqueue_subsegment(s);
+  return encroached_.empty() ? Encroachment::kNone : Encroachment::kQueued;
 }
 
 Refiner::Outcome Refiner::insert_for(TriangleId t, Point2 x) {
@@ -315,13 +380,20 @@ Refiner::Outcome Refiner::insert_for(TriangleId t, Point2 x) {
   const Location where = locate(mesh_, t, x);
   if (where.kind == Location::Kind::kLost) return Outcome::kStuck;
   if (where.kind == Location::Kind::kBlocked) {
-    enqueue_subsegment(mesh_.triangle(triangle_of(where.half_edge)).seg[local_of(where.half_edge)]);
+    const SubsegmentId s =
+        mesh_.triangle(triangle_of(where.half_edge)).seg[local_of(where.half_edge)];
+    if (!may_split(s)) return Outcome::kStuck;
+    enqueue_subsegment(s);
     return Outcome::kRetry;
   }
   const TriangleId home = triangle_of(where.half_edge);
   x = mesh_.rotations().rotate(x, mesh_.subtract(0, where.exponent));
   if (const auto y = good_star_near(home, x)) return insert_at(home, *y, true, where.exponent);
-  if (encroaches(cavity_, x)) return Outcome::kRetry;
+  switch (encroachment(cavity_, x)) {
+    case Encroachment::kNone: break;
+    case Encroachment::kQueued: return Outcome::kRetry;
+    case Encroachment::kRefused: return Outcome::kStuck;
+  }
   return insert_at(home, x, false, where.exponent);
 }
 
@@ -338,13 +410,23 @@ Refiner::Outcome Refiner::insert_at(TriangleId home,
                                     Point2 x,
                                     bool optimal,
                                     std::int32_t exponent) {
+  const double least2 = std::max(shortest_allowed2_, criteria_.min_edge2());
   for (const CavityEdge& e : cavity_.edges) {
-    if (squared_distance(mesh_.lift(e.a.orbit, e.a.exponent), x) < shortest_allowed2_)
-      return Outcome::kStuck;
+    if (squared_distance(mesh_.lift(e.a.orbit, e.a.exponent), x) < least2) return Outcome::kStuck;
   }
+  // A cavity that met itself gives edges that it does not show.
+  const bool guarded = criteria_.has_least_edge();
+  if (guarded) mesh_.begin();
   const VertexId v = editor_.insert_in_cavity(home, x, cavity_, VertexKind::kFree);
+  if (v >= 0 && optimal) settle_star();
+  if (guarded) {
+    if (v < 0 || made_short_edge()) {
+      mesh_.roll_back();
+      return Outcome::kStuck;
+    }
+    mesh_.commit();
+  }
   if (v < 0) return Outcome::kStuck;
-  if (optimal) settle_star();
   if (exponent != 0) ++editor_.counters().crossings;
   if (static_cast<std::size_t>(v) < moves_.size()) moves_[static_cast<std::size_t>(v)] = 0;
   ++counters_.inserted;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -37,6 +38,8 @@ class Refiner {
     // Points tried round a bad triangle for one with a good star before its off-centre is taken.
     int samples = 0;
     std::uint64_t seed = 0;  // of the samples
+    // The mesh is given up, with kElementLimit, beyond about this many triangles.
+    std::size_t most_triangles = std::numeric_limits<std::size_t>::max();
   };
 
   Refiner(Editor& editor, Criteria& criteria, const Settings& settings, ExecutionContext& context);
@@ -49,6 +52,7 @@ class Refiner {
 
  private:
   enum class Outcome : std::uint8_t { kDone, kExempt, kRetry, kStuck };
+  enum class Encroachment : std::uint8_t { kNone, kQueued, kRefused };
 
   void enqueue_all();
   void enqueue_subsegment(SubsegmentId s);
@@ -57,17 +61,21 @@ class Refiner {
   [[nodiscard]] bool encroached(SubsegmentId s) const;
   [[nodiscard]] Result<void> split_queued_subsegments();
   [[nodiscard]] Result<void> split(SubsegmentId s);
+  void split_if_allowed(SubsegmentId s);
+  [[nodiscard]] bool may_split(SubsegmentId s) const;
+  [[nodiscard]] bool made_short_edge() const;
   void clear_lens(SubsegmentId s);
   [[nodiscard]] Point2 split_point(OrbitVertex a, OrbitVertex b) const;
   void settle_star();
   [[nodiscard]] Outcome treat(TriangleId t);
+  [[nodiscard]] Outcome improve(TriangleId t, const Assessment& assessment);
   [[nodiscard]] bool relocate_corner_of(TriangleId t);
   [[nodiscard]] Outcome insert_for(TriangleId t, Point2 x);
   [[nodiscard]] bool insert_sampled(TriangleId t, const Assessment& assessment);
   [[nodiscard]] std::optional<Point2> good_star_near(TriangleId home, Point2 x);
   [[nodiscard]] Outcome insert_at(TriangleId home, Point2 x, bool optimal, std::int32_t exponent);
   [[nodiscard]] Point2 off_centre(TriangleId t, const Assessment& assessment, bool farther) const;
-  [[nodiscard]] bool encroaches(const Cavity& cavity, Point2 x);
+  [[nodiscard]] Encroachment encroachment(const Cavity& cavity, Point2 x);
   [[nodiscard]] Result<void> tick();
   [[nodiscard]] Error unreachable(TriangleId t) const;
 
@@ -82,7 +90,9 @@ class Refiner {
   RefineCounters counters_;
   BadTriangleQueue queue_;
   std::vector<SubsegmentId> segments_;
-  std::vector<std::uint8_t> moves_;  // per vertex: relocations so far
+  std::vector<SubsegmentId> encroached_;
+  std::vector<std::uint8_t> refused_;  // per subsegment: 1 if it must not be split
+  std::vector<std::uint8_t> moves_;    // per vertex: relocations so far
   Cavity cavity_;
   std::vector<StarEdge> star_edges_;
   double shortest_allowed2_ = 0;  // edges below this mean that the bound is out of reach

@@ -190,7 +190,7 @@ bool StarSurgery::merge_on_segment(std::initializer_list<OrbitVertex> removed) {
                b = mesh_.lift(ends_.b.orbit, ends_.b.exponent);
   const auto x = region_.find_on_line(star_edges_, a, b - a);
   if (!x) return false;
-  const bool transaction = criteria_.has_size_bound() && !mesh_.in_transaction();
+  const bool transaction = criteria_.must_look_at_stars() && !mesh_.in_transaction();
   if (transaction) mesh_.begin();
   const OrbitVertex kept = *removed.begin();
   mesh_.touch_vertex(kept.orbit);
@@ -223,7 +223,7 @@ bool StarSurgery::merge_on_segment(std::initializer_list<OrbitVertex> removed) {
   }
   mesh_.set_corner(kept.orbit, 3 * star.front());
   finish_star();
-  return keep_if_sizes_hold(transaction);
+  return keep_if_lengths_hold(transaction);
 }
 
 bool StarSurgery::unsplit(VertexId v) {

@@ -7,11 +7,18 @@
 
 namespace symcell::plane {
 
+namespace {
+
+// Places are sought a little within the bound of a vertex, for the rounding of the search.
+constexpr double kReachShare = 1 - 1e-9;
+
+}  // namespace
+
 StarSurgery::StarSurgery(Editor& editor, const Criteria& criteria)
     : editor_(editor),
       mesh_(editor.mesh()),
       criteria_(criteria),
-      region_(criteria.goal_angle(), criteria.max_edge2()) {
+      region_(criteria.star_angle(), criteria.max_edge2()) {
 }
 
 bool StarSurgery::touches(const std::vector<CavityEdge>& edges,
@@ -29,7 +36,7 @@ void StarSurgery::lift_edges(const std::vector<CavityEdge>& edges,
   out.clear();
   for (const CavityEdge& e : edges) {
     out.push_back({mesh_.lift(e.a.orbit, e.a.exponent), mesh_.lift(e.b.orbit, e.b.exponent),
-                   criteria_.max_area(e.face)});
+                   criteria_.max_area(e.face), kReachShare * criteria_.max_edge_at(e.a.orbit)});
   }
 }
 
@@ -97,7 +104,7 @@ bool StarSurgery::relocate(VertexId v) {
   lift_edges(cavity_.edges, star_edges_);
   const auto x = region_.find(star_edges_);
   if (!x) return false;
-  const bool transaction = criteria_.has_size_bound() && !mesh_.in_transaction();
+  const bool transaction = criteria_.must_look_at_stars() && !mesh_.in_transaction();
   if (transaction) mesh_.begin();
   mesh_.touch_vertex(v);
   mesh_.move_vertex(v, *x);
@@ -110,7 +117,7 @@ bool StarSurgery::relocate(VertexId v) {
     editor_.queue_edge(3 * t + next3(local_of(side.was)));
   }
   editor_.legalise();
-  return keep_if_sizes_hold(transaction);
+  return keep_if_lengths_hold(transaction);
 }
 
 bool StarSurgery::merge(OrbitVertex kept, OrbitVertex removed) {
@@ -119,10 +126,12 @@ bool StarSurgery::merge(OrbitVertex kept, OrbitVertex removed) {
          mesh_.kind(removed.orbit) == VertexKind::kFree && merge_free(kept, removed);
 }
 
-bool StarSurgery::keep_if_sizes_hold(bool transaction) {
+bool StarSurgery::keep_if_lengths_hold(bool transaction) {
   if (!transaction) return true;
   for (const TriangleId t : editor_.created()) {
-    if (mesh_.alive(t) && criteria_.assess(mesh_, mesh_.triangle(t)).too_large) {
+    if (!mesh_.alive(t)) continue;
+    const Triangle& tri = mesh_.triangle(t);
+    if (criteria_.assess(mesh_, tri).too_large || criteria_.has_short_edge(mesh_, tri)) {
       mesh_.roll_back();
       editor_.created().clear();
       return false;
@@ -144,7 +153,7 @@ bool StarSurgery::merge_free(OrbitVertex kept, OrbitVertex removed) {
   const auto x = region_.find(star_edges_);
   if (!x) return false;
   // Angles survive the flips that follow, areas and lengths need not.
-  const bool transaction = criteria_.has_size_bound() && !mesh_.in_transaction();
+  const bool transaction = criteria_.must_look_at_stars() && !mesh_.in_transaction();
   if (transaction) mesh_.begin();
   mesh_.touch_vertex(kept.orbit);
   mesh_.move_vertex(kept.orbit, *x);
@@ -152,7 +161,7 @@ bool StarSurgery::merge_free(OrbitVertex kept, OrbitVertex removed) {
                     cavity_.edges.size(), true, false);
   mesh_.release_vertex(removed.orbit);
   finish_star();
-  return keep_if_sizes_hold(transaction);
+  return keep_if_lengths_hold(transaction);
 }
 
 // A vertex of the polygon from which all of it is seen, if there is one.

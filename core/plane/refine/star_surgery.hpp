@@ -61,7 +61,7 @@ class StarSurgery {
   [[nodiscard]] bool merge_on_segment(std::initializer_list<OrbitVertex> removed);
   [[nodiscard]] bool collect_sides(std::initializer_list<OrbitVertex> removed,
                                    const SegmentEnds& ends);
-  [[nodiscard]] bool keep_if_sizes_hold(bool transaction);
+  [[nodiscard]] bool keep_if_lengths_hold(bool transaction);
   [[nodiscard]] std::optional<std::size_t> fan_apex(const std::vector<CavityEdge>& polygon) const;
   void fill_fan(const std::vector<CavityEdge>& polygon,
                 std::size_t apex,

@@ -30,6 +30,7 @@ TEST(Options, JsonAndTextsSetTheSame) {
   const auto json = options_from_json(Json::parse(R"({"fold": 6, "ignore_markers": true,
       "center": [1, -2.5], "symmetry_tolerance": 1e-4, "min_angle": 33, "max_area": 0.5,
       "max_edge": 2, "order": 2, "max_elements": 1000, "time_limit": 1.5, "seed": 7,
+      "min_edge": 0.25, "sizes": "marker:3=0.5, vertex:17=0.75", "keep_boundary": true,
       "plain": true, "strict": true})"));
   const auto texts = options_from_texts({{"fold", "6"},
                                          {"ignore-markers", ""},
@@ -38,6 +39,9 @@ TEST(Options, JsonAndTextsSetTheSame) {
                                          {"min_angle", "33"},
                                          {"max-area", "0.5"},
                                          {"max_edge", "2"},
+                                         {"min-edge", "0.25"},
+                                         {"sizes", "marker:3=0.5,vertex 17=0.75"},
+                                         {"keep-boundary", ""},
                                          {"order", "2"},
                                          {"max_elements", "1000"},
                                          {"time-limit", "1.5"},
@@ -55,6 +59,29 @@ TEST(Options, JsonAndTextsSetTheSame) {
   EXPECT_EQ(json->seed, 7U);
   EXPECT_TRUE(json->plain);
   EXPECT_TRUE(json->strict);
+  EXPECT_EQ(json->min_edge, 0.25);
+  EXPECT_TRUE(json->keep_boundary);
+  const std::vector<SizeRequest> sizes = {{SizeRequest::Kind::kMarker, 3, 0.5},
+                                          {SizeRequest::Kind::kVertex, 17, 0.75}};
+  EXPECT_EQ(json->sizes, sizes);
+  EXPECT_EQ(options_to_json(*json, kPlanar)["sizes"], "marker:3=0.5,vertex:17=0.75");
+}
+
+TEST(Options, SizesThatAreNone) {
+  for (const char* sizes : {"", "3=0.5", "marker:3", "marker:3=0", "marker:3=-1", "vertex:a=1",
+                            "marker:3=0.5,", "marker:3=0.5 vertex:1=1", "marker:3=inf"}) {
+    EXPECT_EQ(code_of(from_text("sizes", sizes)), ErrorCode::kBadOption) << sizes;
+  }
+  EXPECT_EQ(code_of(options_from_json({{"sizes", 3}})), ErrorCode::kBadOption);
+}
+
+TEST(Options, EdgesTooLongForTheirHalves) {
+  MeshOptions options;
+  options.max_edge = 1;
+  options.min_edge = 0.5;
+  EXPECT_TRUE(options_for(kPlanar, options));
+  options.sizes.push_back({SizeRequest::Kind::kMarker, 1, 0.9});
+  EXPECT_EQ(code_of(options_for(kPlanar, options)), ErrorCode::kBadOption);
 }
 
 TEST(Options, FoldsThatAreNone) {

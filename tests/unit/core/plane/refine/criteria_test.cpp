@@ -100,7 +100,8 @@ TEST(Criteria, TheCentreIsExemptOnlyWhereTheFoldForbidsTheBound) {
   };
   EXPECT_EQ(exemption(24, false, 30), Exemption::kFoldAngleAtCentre);
   EXPECT_EQ(exemption(24, false, 14), Exemption::kNone);
-  EXPECT_EQ(exemption(24, true, 30), Exemption::kSmallInputAngle);
+  // Between a spoke and its own next copy is the fold's angle, no corner of the input.
+  EXPECT_EQ(exemption(24, true, 30), Exemption::kFoldAngleAtCentre);
   EXPECT_EQ(exemption(5, false, 30), Exemption::kNone);
 }
 

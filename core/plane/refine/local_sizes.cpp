@@ -1,0 +1,108 @@
+#include "core/plane/refine/local_sizes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "core/geometry/rotation.hpp"
+
+namespace symcell::plane {
+namespace {
+
+// Vertices are found where symmetrising left them: within this share of the diameter, beside the move
+// that it reports.
+constexpr double kPlaceRel = 1e-9;
+
+constexpr const char* kPointer = "/options/sizes";
+
+// The orbit with a copy at `p`, relative to the centre.
+std::optional<std::size_t> orbit_at(const SymmetricPslg& symmetric,
+                                    const RotationTable& rotations,
+                                    Point2 p) {
+  const double tolerance =
+      (kPlaceRel + 2 * symmetric.symmetry_error_rel) * std::max(symmetric.diameter, length(p));
+  std::optional<std::size_t> found;
+  double nearest = tolerance;
+  for (std::size_t i = 0; i < symmetric.orbit_points.size(); ++i) {
+    const Point2 q = symmetric.orbit_points[i];
+    if (std::abs(length(q) - length(p)) > nearest) continue;
+    const double turn = std::atan2(cross(q, p), dot(q, p)) / (2 * std::numbers::pi);
+    const auto k = static_cast<std::int32_t>(std::lround(turn * symmetric.fold));
+    const double off = distance(rotations.rotate(q, rotations.reduce(k)), p);
+    if (off > nearest) continue;
+    nearest = off;
+    found = i;
+  }
+  return found;
+}
+
+Result<void> size_segments(const SymmetricPslg& symmetric,
+                           const SizeRequest& request,
+                           std::vector<double>& of_segment) {
+  of_segment.resize(symmetric.segments.size(), kInfinity);
+  bool any = false;
+  const std::int32_t copies = symmetric.uniform_markers ? 1 : symmetric.fold;
+  for (std::size_t s = 0; s < of_segment.size(); ++s) {
+    for (std::int32_t k = 0; k < copies; ++k) {
+      if (symmetric.segment_marker(s, k) != request.id) continue;
+      of_segment[s] = std::min(of_segment[s], request.size);
+      any = true;
+    }
+  }
+  if (any) return {};
+  return fail(ErrorCode::kBadOption,
+              "sizes: no segment of the domain has marker " + std::to_string(request.id), {},
+              kPointer);
+}
+
+}  // namespace
+
+Result<LocalSizes> resolve_sizes(const Pslg& pslg,
+                                 const SymmetricPslg& symmetric,
+                                 const std::vector<SizeRequest>& sizes) {
+  LocalSizes result;
+  if (sizes.empty()) return result;
+  const RotationTable rotations(symmetric.fold);
+  std::vector<std::int64_t> given(symmetric.orbit_points.size(), -1);  // by which vertex
+  for (const SizeRequest& request : sizes) {
+    if (request.kind == SizeRequest::Kind::kMarker) {
+      SYMCELL_TRY(size_segments(symmetric, request, result.of_segment));
+      continue;
+    }
+    result.at_vertex.resize(symmetric.orbit_points.size(), kInfinity);
+    const auto vertex = static_cast<std::size_t>(request.id);
+    if (request.id < 0 || vertex >= pslg.vertices.size()) {
+      return fail(ErrorCode::kBadOption,
+                  "sizes: the model has no vertex " + std::to_string(request.id) + "; it has " +
+                      std::to_string(pslg.vertices.size()) + ", from 0",
+                  {}, kPointer);
+    }
+    const Point2 p = pslg.vertices[vertex];
+    const auto orbit = orbit_at(symmetric, rotations, p - symmetric.centre);
+    char place[80];
+    std::snprintf(place, sizeof place, "vertex %lld at (%.9g, %.9g)",
+                  static_cast<long long>(request.id), p.x, p.y);
+    if (!orbit) {
+      return fail(ErrorCode::kBadOption,
+                  std::string("sizes: ") + place + " is none of the domain that is meshed",
+                  {request.id}, kPointer);
+    }
+    double& size = result.at_vertex[*orbit];
+    if (size < kInfinity && size != request.size) {
+      return fail(ErrorCode::kBadOption,
+                  std::string("sizes: ") + place + " and vertex " + std::to_string(given[*orbit]) +
+                      " are copies of each other under the " + std::to_string(symmetric.fold) +
+                      "-fold symmetry and cannot have different sizes; give one size, or a fold "
+                      "that keeps them apart",
+                  {given[*orbit], request.id}, kPointer);
+    }
+    size = request.size;
+    given[*orbit] = request.id;
+  }
+  return result;
+}
+
+}  // namespace symcell::plane
