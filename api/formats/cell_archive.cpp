@@ -1,9 +1,10 @@
 // Layout, all little-endian:
 //   8 bytes   magic "SYMCELL" and the version
-//   5 int32   dimension, order, fold, nodes an element, nodes a facet; 1 int32 of padding
+//   6 int32   dimension, order, fold, nodes an element, nodes a facet, bytes of the names of markers
 //   15 double axis origin, axis direction, frame
 //   14 uint64 sizes of the arrays in entries, in the order of `each_array`
 //   the arrays, one after the other
+//   the names of markers: per name its marker in decimals, a space, the name and a line feed
 //   uint32    CRC-32 of all bytes before
 #include "api/formats/cell_archive.hpp"
 
@@ -11,8 +12,10 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstring>
 #include <limits>
+#include <string>
 
 #include "api/formats/byte_writer.hpp"
 
@@ -55,8 +58,34 @@ struct Header {
   std::array<double, 15> real{};
 };
 
-Header header_of(const SymmetryCellMesh& m) {
-  Header h{{m.dimension, m.order, m.fold, m.nodes_per_element, m.nodes_per_facet, 0}, {}};
+// Names hold no line feeds: readers of models see to that.
+std::string names_text(const SymmetryCellMesh& m) {
+  std::string text;
+  for (const MarkerName& n : m.marker_names) {
+    text += std::to_string(n.marker) + " " + n.name + "\n";
+  }
+  return text;
+}
+
+// Whether the text is one.
+bool read_names(std::string_view text, std::vector<MarkerName>& names) {
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n'), space = text.find(' ');
+    if (end == std::string_view::npos || space >= end) return false;
+    MarkerName name;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + space, name.marker);
+    if (error != std::errc{} || stop != text.data() + space) return false;
+    name.name = text.substr(space + 1, end - space - 1);
+    names.push_back(std::move(name));
+    text.remove_prefix(end + 1);
+  }
+  return true;
+}
+
+Header header_of(const SymmetryCellMesh& m, std::size_t name_bytes) {
+  Header h{{m.dimension, m.order, m.fold, m.nodes_per_element, m.nodes_per_facet,
+            static_cast<std::int32_t>(name_bytes)},
+           {}};
   h.real = {m.axis_origin.x,    m.axis_origin.y,    m.axis_origin.z,
             m.axis_direction.x, m.axis_direction.y, m.axis_direction.z};
   std::ranges::copy(m.frame, h.real.begin() + 6);
@@ -138,12 +167,14 @@ Result<void> write_cell_archive(const SymmetryCellMesh& cell, const Sink& sink) 
   };
   ByteWriter out(summing);
   out.text(kMagic);
-  const Header header = header_of(cell);
+  const std::string names = names_text(cell);
+  const Header header = header_of(cell, names.size());
   out.value(header.whole);
   out.value(header.real);
   each_array(cell, [&](const auto& array) { out.value(std::uint64_t{array.size()}); });
   each_array(cell,
              [&](const auto& array) { out.raw(array.data(), array.size() * entry_size(array)); });
+  out.text(names);
   out.flush();
   out.value(static_cast<std::uint32_t>(crc));
   return out.finish();
@@ -163,9 +194,11 @@ Result<SymmetryCellMesh> read_cell_archive(std::string_view bytes) {
   // The sizes must make up the file exactly; no size is trusted before that.
   SymmetryCellMesh mesh;
   apply(*header, mesh);
+  const std::uint64_t name_bytes = static_cast<std::uint32_t>(header->whole[5]);
   std::uint64_t expected = kHeaderBytes + 4;
   std::size_t i = 0;
-  bool fits = true;
+  bool fits = name_bytes <= bytes.size() - expected;
+  if (fits) expected += name_bytes;
   each_array(mesh, [&](const auto& array) {
     fits = fits && sizes[i] <= (bytes.size() - expected) / entry_size(array);
     if (fits) expected += sizes[i] * entry_size(array);
@@ -187,6 +220,9 @@ Result<SymmetryCellMesh> read_cell_archive(std::string_view bytes) {
     if (size > 0) std::memcpy(array.data(), at, size);
     at += size;
   });
+  if (!read_names({at, static_cast<std::size_t>(name_bytes)}, mesh.marker_names)) {
+    return fail(ErrorCode::kSyntax, "the archive is damaged: names of markers do not fit");
+  }
   if (const std::string_view rule = broken_rule(mesh); !rule.empty()) {
     return fail(ErrorCode::kSyntax, "the archive is damaged: " + std::string(rule) + " do not fit");
   }
