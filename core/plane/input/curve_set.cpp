@@ -132,6 +132,24 @@ bool passes(const Shape& s, Point2 p, double tolerance) {
 
 }  // namespace
 
+std::vector<Point2> meeting_places(const Pslg& pslg,
+                                   std::size_t s,
+                                   std::size_t t,
+                                   double tolerance) {
+  const auto shape = [&](std::size_t i) {
+    const PslgSegment& segment = pslg.segments[i];
+    return Shape(pslg.vertices[at(segment.a)], pslg.vertices[at(segment.b)], pslg.bulge(i));
+  };
+  const Shape first = shape(s), second = shape(t);
+  const Places places = places_where_meet(first, second, tolerance);
+  std::vector<Point2> result;
+  for (int i = 0; i < places.count; ++i) {
+    const Point2 p = places.place[static_cast<std::size_t>(i)];
+    if (passes(first, p, tolerance) && passes(second, p, tolerance)) result.push_back(p);
+  }
+  return result;
+}
+
 std::vector<std::int32_t> degrees_of(const Pslg& pslg) {
   std::vector<std::int32_t> degrees(pslg.vertices.size(), 0);
   for (const PslgSegment& s : pslg.segments) {

@@ -63,6 +63,12 @@ class CurveSet {
   std::vector<Curve> curves_;
 };
 
+// Where two segments of a model, lines or arcs, meet or touch, within `tolerance`; ends count.
+[[nodiscard]] std::vector<Point2> meeting_places(const Pslg& pslg,
+                                                 std::size_t s,
+                                                 std::size_t t,
+                                                 double tolerance);
+
 // How many segments end at each vertex.
 [[nodiscard]] std::vector<std::int32_t> degrees_of(const Pslg& pslg);
 

@@ -10,6 +10,7 @@
 #include "core/geometry/point_grid.hpp"
 #include "core/model/describe.hpp"
 #include "core/plane/input/arc_chains.hpp"
+#include "core/plane/input/curve_set.hpp"
 #include "core/plane/input/curve_symmetry.hpp"
 #include "core/plane/input/validate_pslg.hpp"
 
@@ -21,7 +22,7 @@ constexpr double kOnArcRel = 1e-9;
 // Of the angle of a chord: rounding must not give copies of an arc different numbers of chords.
 constexpr double kSameCount = 1e-6;
 constexpr double kMostBulge = 1e4;  // less than 1/5000 of a turn from a full one
-constexpr int kMostDoublings = 12;  // of the chords of arcs that lie close
+constexpr int kMostDoublings = 8;   // of the chords of arcs that lie close
 constexpr double kCoarsestChord = std::numbers::pi / 3;
 constexpr std::int64_t kPlainFold = 12;  // circles about one centre alone: chords by the dozen
 
@@ -65,7 +66,8 @@ class Discretiser {
       auto valid = validate_pslg(result.pslg, context);
       if (valid) return result;
       Error error = valid.error();
-      if (!double_chords(error)) return fail(in_numbers_of_model(std::move(error), result));
+      if (!may_mend(error, result) || !double_chords(error))
+        return fail(in_numbers_of_model(std::move(error), result));
     }
   }
 
@@ -228,12 +230,25 @@ class Discretiser {
     return {length(given), 0};
   }
 
-  // Whether finer chords may mend what is wrong.
-  bool double_chords(const Error& error) {
+  // Whether chords meet and their arcs do not, but at vertices.
+  [[nodiscard]] bool may_mend(const Error& error, const ChordedPslg& chorded) const {
     if (error.code != ErrorCode::kSelfIntersection &&
         error.code != ErrorCode::kOverlappingSegments) {
       return false;
     }
+    const auto source = [&](std::size_t i) {
+      return at(chorded.source[static_cast<std::size_t>(error.elements[i])]);
+    };
+    const double near = kOnArcRel * diameter_;
+    const std::vector<Point2> places = meeting_places(pslg_, source(0), source(1), near);
+    return std::all_of(places.begin(), places.end(), [&](Point2 p) {
+      return std::any_of(pslg_.vertices.begin(), pslg_.vertices.end(),
+                         [&](Point2 v) { return distance(p, v) <= 2 * near; });
+    });
+  }
+
+  // Of the arcs that cross and their copies; false if none may have more.
+  bool double_chords(const Error& error) {
     std::vector<ArcChain> crossing;
     for (const std::int64_t s : error.elements) {
       const std::int32_t c = chain_of_[static_cast<std::size_t>(s)];

@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <initializer_list>
 #include <numbers>
+#include <sstream>
 #include <string>
-#include <utility>
 
 #include "api/formats/dxf_scan.hpp"
 #include "core/geometry/arc.hpp"
@@ -14,27 +13,24 @@
 namespace symcell {
 namespace {
 
-using Groups = std::initializer_list<std::pair<int, std::string>>;
-
-std::string groups(Groups list) {
-  std::string text;
-  for (const auto& [code, value] : list) text += std::to_string(code) + "\n" + value + "\n";
+// Codes and values in turn, as lines.
+std::string groups(const std::string& words) {
+  std::istringstream stream(words);
+  std::string text, word;
+  while (stream >> word) text += word + "\n";
   return text;
 }
 
 std::string drawing(const std::string& entities, const std::string& blocks = {}) {
-  return groups({{0, "SECTION"}, {2, "HEADER"}, {9, "$ACADVER"}, {1, "AC1015"}, {0, "ENDSEC"}}) +
-         groups({{0, "SECTION"}, {2, "BLOCKS"}}) + blocks + groups({{0, "ENDSEC"}}) +
-         groups({{0, "SECTION"}, {2, "ENTITIES"}}) + entities + groups({{0, "ENDSEC"}, {0, "EOF"}});
+  return groups("0 SECTION 2 HEADER 9 $ACADVER 1 AC1015 0 ENDSEC") + groups("0 SECTION 2 BLOCKS") +
+         blocks + groups("0 ENDSEC") + groups("0 SECTION 2 ENTITIES") + entities +
+         groups("0 ENDSEC 0 EOF");
 }
 
 std::string line(const std::string& layer, double x1, double y1, double x2, double y2) {
-  return groups({{0, "LINE"},
-                 {8, layer},
-                 {10, std::to_string(x1)},
-                 {20, std::to_string(y1)},
-                 {11, std::to_string(x2)},
-                 {21, std::to_string(y2)}});
+  return groups("0 LINE 8 " + std::string(layer) + " 10 " + std::string(std::to_string(x1)) +
+                " 20 " + std::string(std::to_string(y1)) + " 11 " +
+                std::string(std::to_string(x2)) + " 21 " + std::string(std::to_string(y2)));
 }
 
 Pslg read(const std::string& text) {
@@ -76,34 +72,20 @@ TEST(Dxf, LinesShareTheirEndsAndLayersAreMarkers) {
 }
 
 TEST(Dxf, ArcsAndCircles) {
-  const Pslg arc = read(drawing(
-      groups({{0, "ARC"}, {8, "0"}, {10, "1"}, {20, "2"}, {40, "3"}, {50, "270"}, {51, "30"}})));
+  const Pslg arc = read(drawing(groups("0 ARC 8 0 10 1 20 2 40 3 50 270 51 30")));
   ASSERT_EQ(arc.segments.size(), 1U);
   EXPECT_NEAR(arc.vertices[0].y, -1, 1e-12);
   EXPECT_NEAR(angle_of_bulge(arc.bulge(0)), 2 * std::numbers::pi / 3, 1e-12);
-  const Pslg circle =
-      read(drawing(groups({{0, "CIRCLE"}, {8, "0"}, {10, "1"}, {20, "2"}, {40, "3"}})));
+  const Pslg circle = read(drawing(groups("0 CIRCLE 8 0 10 1 20 2 40 3")));
   EXPECT_EQ(circle.segments.size(), 2U);
   EXPECT_NEAR(area_of(circle), 9 * std::numbers::pi, 1e-12);
 }
 
 TEST(Dxf, PolylinesWithBulges) {
-  const std::string light = groups({{0, "LWPOLYLINE"},
-                                    {8, "0"},
-                                    {90, "3"},
-                                    {70, "1"},
-                                    {10, "0"},
-                                    {20, "0"},
-                                    {10, "2"},
-                                    {20, "0"},
-                                    {42, "1"},
-                                    {10, "2"},
-                                    {20, "2"}});
-  const std::string heavy = groups({{0, "POLYLINE"}, {8, "0"}, {66, "1"}, {70, "1"}}) +
-                            groups({{0, "VERTEX"}, {8, "0"}, {10, "0"}, {20, "0"}}) +
-                            groups({{0, "VERTEX"}, {8, "0"}, {10, "2"}, {20, "0"}, {42, "1"}}) +
-                            groups({{0, "VERTEX"}, {8, "0"}, {10, "2"}, {20, "2"}}) +
-                            groups({{0, "SEQEND"}});
+  const std::string light = groups("0 LWPOLYLINE 8 0 90 3 70 1 10 0 20 0 10 2 20 0 42 1 10 2 20 2");
+  const std::string heavy = groups("0 POLYLINE 8 0 66 1 70 1") + groups("0 VERTEX 8 0 10 0 20 0") +
+                            groups("0 VERTEX 8 0 10 2 20 0 42 1") +
+                            groups("0 VERTEX 8 0 10 2 20 2") + groups("0 SEQEND");
   for (const std::string& text : {light, heavy}) {
     const Pslg pslg = read(drawing(text));
     EXPECT_EQ(pslg.segments.size(), 3U);
@@ -112,64 +94,42 @@ TEST(Dxf, PolylinesWithBulges) {
 }
 
 TEST(Dxf, EllipsesAndSplinesBecomeArcs) {
-  const Pslg ellipse = read(drawing(groups({{0, "ELLIPSE"},
-                                            {8, "0"},
-                                            {10, "1"},
-                                            {20, "1"},
-                                            {11, "3"},
-                                            {21, "0"},
-                                            {40, "0.5"},
-                                            {41, "0"},
-                                            {42, "6.283185307179586"}})));
+  const Pslg ellipse =
+      read(drawing(groups("0 ELLIPSE 8 0 10 1 20 1 11 3 21 0 40 0.5 41 0 42 6.283185307179586")));
   EXPECT_NEAR(area_of(ellipse), 4.5 * std::numbers::pi, 1e-3);
   EXPECT_LT(ellipse.segments.size(), 200U);
   // A quarter circle as a rational spline of degree 2, closed by two lines.
-  const std::string quarter = groups({{0, "SPLINE"}, {8, "0"},  {70, "4"},
-                                      {71, "2"},     {72, "6"}, {73, "3"},
-                                      {74, "0"},     {40, "0"}, {40, "0"},
-                                      {40, "0"},     {40, "1"}, {40, "1"},
-                                      {40, "1"},     {10, "1"}, {20, "0"},
-                                      {30, "0"},     {41, "1"}, {10, "1"},
-                                      {20, "1"},     {30, "0"}, {41, "0.70710678118654752"},
-                                      {10, "0"},     {20, "1"}, {30, "0"},
-                                      {41, "1"}});
+  const std::string quarter = groups(
+      "0 SPLINE 8 0 70 4 71 2 72 6 73 3 74 0 40 0 40 0 40 0 40 1 40 1 40 1 10 1 20 0 30 0 41 1 10 "
+      "1 20 1 30 0 41 0.70710678118654752 10 0 20 1 30 0 41 1");
   const Pslg sector = read(drawing(quarter + line("0", 0, 1, 0, 0) + line("0", 0, 0, 1, 0)));
   EXPECT_NEAR(area_of(sector), std::numbers::pi / 4, 1e-5);
 }
 
 TEST(Dxf, BlocksAreInsertedTurnedScaledAndMirrored) {
-  const std::string block = groups({{0, "BLOCK"}, {8, "0"}, {2, "Part"}, {10, "1"}, {20, "0"}}) +
-                            groups({{0, "LWPOLYLINE"},
-                                    {8, "0"},
-                                    {90, "2"},
-                                    {70, "1"},
-                                    {10, "1"},
-                                    {20, "0"},
-                                    {42, "1"},
-                                    {10, "2"},
-                                    {20, "0"},
-                                    {42, "0"}}) +
-                            groups({{0, "ENDBLK"}, {8, "0"}});
-  const auto insert = [](Groups more) {
-    return groups({{0, "INSERT"}, {8, "parts"}, {2, "PART"}, {10, "0"}, {20, "0"}}) + groups(more);
+  const std::string block = groups("0 BLOCK 8 0 2 Part 10 1 20 0") +
+                            groups("0 LWPOLYLINE 8 0 90 2 70 1 10 1 20 0 42 1 10 2 20 0 42 0") +
+                            groups("0 ENDBLK 8 0");
+  const auto insert = [](const char* more) {
+    return groups("0 INSERT 8 parts 2 PART 10 0 20 0") + groups(more);
   };
   // Half a circle of diameter 1 below its line.
   const double half = std::numbers::pi / 8;
-  const Pslg turned_part = read(drawing(insert({{50, "90"}, {41, "2"}, {42, "2"}}), block));
+  const Pslg turned_part = read(drawing(insert("50 90 41 2 42 2"), block));
   EXPECT_NEAR(area_of(turned_part), 4 * half, 1e-12);
   EXPECT_NEAR(turned_part.vertices[1].y, 2, 1e-12);
   EXPECT_EQ(turned_part.segments[0].marker, 1);
-  const Pslg mirrored = read(drawing(insert({{41, "-1"}}), block));
+  const Pslg mirrored = read(drawing(insert("41 -1"), block));
   EXPECT_NEAR(area_of(mirrored), -half, 1e-12);
-  const Pslg squeezed = read(drawing(insert({{42, "0.5"}}), block));
+  const Pslg squeezed = read(drawing(insert("42 0.5"), block));
   EXPECT_NEAR(area_of(squeezed), half / 2, 1e-4);
-  const Pslg array = read(drawing(insert({{70, "3"}, {71, "2"}, {44, "5"}, {45, "7"}}), block));
+  const Pslg array = read(drawing(insert("70 3 71 2 44 5 45 7"), block));
   EXPECT_EQ(array.segments.size(), 12U);
 }
 
 TEST(Dxf, PointsAreSeeds) {
   const auto point = [](const char* layer, const char* x) {
-    return groups({{0, "POINT"}, {8, layer}, {10, x}, {20, "0"}});
+    return groups("0 POINT 8 " + std::string(layer) + " 10 " + std::string(x) + " 20 0");
   };
   const Pslg pslg = read(drawing(line("0", 0, 0, 1, 0) + point("Holes", "3") + point("iron", "4")));
   ASSERT_EQ(pslg.holes.size(), 1U);
@@ -179,9 +139,9 @@ TEST(Dxf, PointsAreSeeds) {
 }
 
 TEST(Dxf, WhatIsNoPartOfTheModelIsLeftOutAndTold) {
-  const std::string text = groups({{0, "TEXT"}, {8, "0"}, {1, "hello"}, {10, "0"}, {20, "0"}});
-  const std::string hatch = groups({{0, "HATCH"}, {8, "0"}, {91, "99999999"}});
-  const std::string paper = groups({{0, "LINE"}, {8, "0"}, {67, "1"}, {10, "x"}});
+  const std::string text = groups("0 TEXT 8 0 1 hello 10 0 20 0");
+  const std::string hatch = groups("0 HATCH 8 0 91 99999999");
+  const std::string paper = groups("0 LINE 8 0 67 1 10 x");
   const Pslg pslg =
       read(drawing(line("0", 0, 0, 1, 0) + text + hatch + hatch + line("Defpoints", 5, 5, 6, 6)));
   EXPECT_EQ(pslg.segments.size(), 1U);
@@ -197,32 +157,18 @@ TEST(Dxf, NamesWhatIsWrong) {
     ASSERT_FALSE(cut) << size;
     EXPECT_NE(cut.error().message.find("line"), std::string::npos) << cut.error().message;
   }
-  expect_error(good.substr(0, good.find("11\n1")), ErrorCode::kTruncated, "LINE of line 17");
-  expect_error(drawing(groups({{0, "LINE"}, {8, "0"}, {10, "nan"}})), ErrorCode::kNonFinite,
-               "group 10 of the LINE");
-  expect_error(drawing(groups({{0, "CIRCLE"}, {8, "0"}, {10, "1e999"}})), ErrorCode::kNonFinite,
-               "CIRCLE");
-  expect_error(
-      drawing(groups(
-          {{0, "LWPOLYLINE"}, {8, "0"}, {90, "2000000000"}, {70, "0"}, {10, "0"}, {20, "0"}})),
-      ErrorCode::kCountMismatch, "is said to have 2000000000 vertices");
-  expect_error(
-      drawing(groups({{0, "SPLINE"}, {8, "0"}, {71, "3"}, {72, "-5"}, {10, "0"}, {20, "0"}})),
-      ErrorCode::kCountMismatch, "knots");
-  expect_error(drawing(groups({{0, "SPLINE"}, {8, "0"}, {71, "3"}, {10, "0"}, {20, "0"}})),
-               ErrorCode::kSyntax, "do not fit");
-  expect_error(drawing(groups({{0, "INSERT"}, {8, "0"}, {2, "none"}, {10, "0"}, {20, "0"}})),
-               ErrorCode::kMissingField, "\"none\"");
-  expect_error(drawing(line("0", 0, 0, 1, 0) + groups({{0, "ARC"},
-                                                       {8, "0"},
-                                                       {10, "0"},
-                                                       {20, "0"},
-                                                       {40, "1"},
-                                                       {50, "0"},
-                                                       {51, "9"},
-                                                       {210, "1"},
-                                                       {220, "0"},
-                                                       {230, "0"}})),
+  expect_error(good.substr(0, good.find("11\n1")), ErrorCode::kTruncated, "LINE of line 21");
+  expect_error(drawing(groups("0 LINE 8 0 10 nan")), ErrorCode::kNonFinite, "group 10 of the LINE");
+  expect_error(drawing(groups("0 CIRCLE 8 0 10 1e999")), ErrorCode::kNonFinite, "CIRCLE");
+  expect_error(drawing(groups("0 LWPOLYLINE 8 0 90 2000000000 70 0 10 0 20 0")),
+               ErrorCode::kCountMismatch, "is said to have 2000000000 vertices");
+  expect_error(drawing(groups("0 SPLINE 8 0 71 3 72 -5 10 0 20 0")), ErrorCode::kCountMismatch,
+               "knots");
+  expect_error(drawing(groups("0 SPLINE 8 0 71 3 10 0 20 0")), ErrorCode::kSyntax, "do not fit");
+  expect_error(drawing(groups("0 INSERT 8 0 2 none 10 0 20 0")), ErrorCode::kMissingField,
+               "\"none\"");
+  expect_error(drawing(line("0", 0, 0, 1, 0) +
+                       groups("0 ARC 8 0 10 0 20 0 40 1 50 0 51 9 210 1 220 0 230 0")),
                ErrorCode::kUnsupportedModel, "ARC");
   expect_error(drawing(""), ErrorCode::kEmptyFile, "no lines");
   expect_error("AutoCAD Binary DXF\r\n\x1a", ErrorCode::kUnsupportedModel, "binary");
@@ -230,12 +176,11 @@ TEST(Dxf, NamesWhatIsWrong) {
 
 TEST(Dxf, BlocksThatHoldThemselvesAreRefused) {
   const auto holding = [](const char* name, const char* other) {
-    return groups({{0, "BLOCK"}, {8, "0"}, {2, name}, {10, "0"}, {20, "0"}}) +
-           groups({{0, "INSERT"}, {8, "0"}, {2, other}, {10, "0"}, {20, "0"}}) +
-           groups({{0, "INSERT"}, {8, "0"}, {2, other}, {10, "0"}, {20, "0"}}) +
-           groups({{0, "ENDBLK"}, {8, "0"}});
+    return groups("0 BLOCK 8 0 2 " + std::string(name) + " 10 0 20 0") +
+           groups("0 INSERT 8 0 2 " + std::string(other) + " 10 0 20 0") +
+           groups("0 INSERT 8 0 2 " + std::string(other) + " 10 0 20 0") + groups("0 ENDBLK 8 0");
   };
-  const std::string insert = groups({{0, "INSERT"}, {8, "0"}, {2, "b0"}, {10, "0"}, {20, "0"}});
+  const std::string insert = groups("0 INSERT 8 0 2 b0 10 0 20 0");
   expect_error(drawing(insert, holding("b0", "b1") + holding("b1", "b0")), ErrorCode::kSyntax,
                "holds itself");
   // Two copies of two copies, and so on.
@@ -243,17 +188,9 @@ TEST(Dxf, BlocksThatHoldThemselvesAreRefused) {
   for (int i = 0; i < 30; ++i) {
     deep += holding(("b" + std::to_string(i)).c_str(), ("b" + std::to_string(i + 1)).c_str());
   }
-  deep += groups({{0, "BLOCK"}, {8, "0"}, {2, "b30"}, {10, "0"}, {20, "0"}}) +
-          groups({{0, "ENDBLK"}, {8, "0"}});
-  expect_error(drawing(insert, deep), ErrorCode::kTooLarge, "too many");
-  expect_error(drawing(groups({{0, "INSERT"},
-                               {8, "0"},
-                               {2, "b30"},
-                               {10, "0"},
-                               {20, "0"},
-                               {70, "2000000000"},
-                               {71, "2000000000"}}),
-                       deep),
+  deep += groups("0 BLOCK 8 0 2 b30 10 0 20 0") + groups("0 ENDBLK 8 0");
+  expect_error(drawing(insert, deep), ErrorCode::kTooLarge, "more than 10000000");
+  expect_error(drawing(groups("0 INSERT 8 0 2 b30 10 0 20 0 70 2000000000 71 2000000000"), deep),
                ErrorCode::kTooLarge, "too many");
 }
 
