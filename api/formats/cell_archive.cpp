@@ -1,10 +1,11 @@
 // Layout, all little-endian:
 //   8 bytes   magic "SYMCELL" and the version
-//   6 int32   dimension, order, fold, nodes an element, nodes a facet, bytes of the names of markers
+//   5 int32   dimension, order, fold, nodes an element, nodes a facet; 1 int32 of padding
 //   15 double axis origin, axis direction, frame
 //   14 uint64 sizes of the arrays in entries, in the order of `each_array`
 //   the arrays, one after the other
-//   the names of markers: per name its marker in decimals, a space, the name and a line feed
+//   the names of markers, up to the last 4 bytes: each its marker in decimals, a space, the name and a
+//             line feed
 //   uint32    CRC-32 of all bytes before
 #include "api/formats/cell_archive.hpp"
 
@@ -82,10 +83,8 @@ bool read_names(std::string_view text, std::vector<MarkerName>& names) {
   return true;
 }
 
-Header header_of(const SymmetryCellMesh& m, std::size_t name_bytes) {
-  Header h{{m.dimension, m.order, m.fold, m.nodes_per_element, m.nodes_per_facet,
-            static_cast<std::int32_t>(name_bytes)},
-           {}};
+Header header_of(const SymmetryCellMesh& m) {
+  Header h{{m.dimension, m.order, m.fold, m.nodes_per_element, m.nodes_per_facet, 0}, {}};
   h.real = {m.axis_origin.x,    m.axis_origin.y,    m.axis_origin.z,
             m.axis_direction.x, m.axis_direction.y, m.axis_direction.z};
   std::ranges::copy(m.frame, h.real.begin() + 6);
@@ -167,14 +166,13 @@ Result<void> write_cell_archive(const SymmetryCellMesh& cell, const Sink& sink) 
   };
   ByteWriter out(summing);
   out.text(kMagic);
-  const std::string names = names_text(cell);
-  const Header header = header_of(cell, names.size());
+  const Header header = header_of(cell);
   out.value(header.whole);
   out.value(header.real);
   each_array(cell, [&](const auto& array) { out.value(std::uint64_t{array.size()}); });
   each_array(cell,
              [&](const auto& array) { out.raw(array.data(), array.size() * entry_size(array)); });
-  out.text(names);
+  out.text(names_text(cell));
   out.flush();
   out.value(static_cast<std::uint32_t>(crc));
   return out.finish();
@@ -194,20 +192,15 @@ Result<SymmetryCellMesh> read_cell_archive(std::string_view bytes) {
   // The sizes must make up the file exactly; no size is trusted before that.
   SymmetryCellMesh mesh;
   apply(*header, mesh);
-  const std::uint64_t name_bytes = static_cast<std::uint32_t>(header->whole[5]);
   std::uint64_t expected = kHeaderBytes + 4;
   std::size_t i = 0;
-  bool fits = name_bytes <= bytes.size() - expected;
-  if (fits) expected += name_bytes;
+  bool fits = true;
   each_array(mesh, [&](const auto& array) {
     fits = fits && sizes[i] <= (bytes.size() - expected) / entry_size(array);
     if (fits) expected += sizes[i] * entry_size(array);
     ++i;
   });
   if (!fits) return fail(ErrorCode::kTruncated, "the archive is shorter than its header says");
-  if (expected != bytes.size()) {
-    return fail(ErrorCode::kSyntax, "the archive is longer than its header says");
-  }
   std::uint32_t stored = 0;
   std::memcpy(&stored, bytes.data() + bytes.size() - 4, 4);
   const uLong crc = crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size() - 4);
@@ -220,8 +213,9 @@ Result<SymmetryCellMesh> read_cell_archive(std::string_view bytes) {
     if (size > 0) std::memcpy(array.data(), at, size);
     at += size;
   });
-  if (!read_names({at, static_cast<std::size_t>(name_bytes)}, mesh.marker_names)) {
-    return fail(ErrorCode::kSyntax, "the archive is damaged: names of markers do not fit");
+  const auto name_bytes = static_cast<std::size_t>(bytes.data() + bytes.size() - 4 - at);
+  if (!read_names({at, name_bytes}, mesh.marker_names)) {
+    return fail(ErrorCode::kSyntax, "the archive is longer than its header says");
   }
   if (const std::string_view rule = broken_rule(mesh); !rule.empty()) {
     return fail(ErrorCode::kSyntax, "the archive is damaged: " + std::string(rule) + " do not fit");
