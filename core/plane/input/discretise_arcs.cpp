@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -276,6 +277,7 @@ class Discretiser {
 
   // Chords are named as their arcs.
   [[nodiscard]] Error in_numbers_of_model(Error error, const ChordedPslg& chorded) const {
+    if (error.code == ErrorCode::kDuplicateVertices) return meeting_arcs(std::move(error), chorded);
     const bool of_segments = error.pointer.starts_with("/segments/");
     if (!of_segments) return error;
     std::string note;
@@ -293,6 +295,30 @@ class Discretiser {
     if (!note.empty()) error.message += note + ")";
     error.pointer = "/segments/" + std::to_string(last);
     return error;
+  }
+
+  // Two vertices at one place, of which a chord made one: there its arc meets something.
+  [[nodiscard]] Error meeting_arcs(Error error, const ChordedPslg& chorded) const {
+    const auto made = [&](std::int64_t v) {
+      return v >= std::ssize(pslg_.vertices) || arcs_.is_joint[static_cast<std::size_t>(v)] != 0;
+    };
+    if (std::none_of(error.elements.begin(), error.elements.end(), made)) return error;
+    std::vector<std::int64_t> segments;
+    for (const std::int64_t v : error.elements) {
+      const auto& all = chorded.pslg.segments;
+      const auto with = std::find_if(all.begin(), all.end(),
+                                     [v](const PslgSegment& s) { return s.a == v || s.b == v; });
+      if (with != all.end()) {
+        segments.push_back(chorded.source[static_cast<std::size_t>(with - all.begin())]);
+      }
+    }
+    if (segments.size() != 2) return error;
+    const Point2 place = chorded.pslg.vertices[static_cast<std::size_t>(error.elements.front())];
+    return {ErrorCode::kSelfIntersection,
+            "segments " + std::to_string(segments[0]) + " and " + std::to_string(segments[1]) +
+                " meet near " + describe_point(place) +
+                ", where they share no vertex; add one there and split both, or give repair=all",
+            segments, "/segments/" + std::to_string(std::max(segments[0], segments[1]))};
   }
 
   const Pslg& pslg_;
