@@ -6,7 +6,7 @@
 build_packages=(
   cmake g++ ninja-build pkg-config
   libcgal-dev libexpected-dev libtet1.5-dev
-  libpugixml-dev nlohmann-json3-dev zlib1g-dev
+  libdxflib-dev libpugixml-dev nlohmann-json3-dev zlib1g-dev
   libboost-dev libcli11-dev libcpp-httplib-dev libspdlog-dev libsqlitecpp-dev libssl-dev
   libgtest-dev
 )

@@ -1,5 +1,6 @@
 #include "core/mesh_model.hpp"
 
+#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
@@ -7,9 +8,12 @@
 #include <vector>
 
 #include "core/base/stopwatch.hpp"
+#include "core/cell/regions_alternate.hpp"
+#include "core/plane/arcs/find_chords.hpp"
+#include "core/plane/input/discretise_arcs.hpp"
+#include "core/plane/input/planar_input.hpp"
 #include "core/plane/input/validate_pslg.hpp"
 #include "core/plane/mesh_pslg.hpp"
-#include "core/plane/refine/local_sizes.hpp"
 #include "core/plane/symmetry/symmetrise.hpp"
 #include "core/solid/choose_fold.hpp"
 #include "core/solid/mesh_solid.hpp"
@@ -50,7 +54,6 @@ void record(const plane::SymmetricPslg& symmetric, Statistics& statistics) {
   reported.axis_origin = {symmetric.centre.x, symmetric.centre.y, 0};
   reported.error_rel = symmetric.symmetry_error_rel;
   reported.detected = symmetric.fold_detected;
-  statistics.warnings = warnings_of(symmetric);
 }
 
 void record(const SymmetricSolid& solid, Statistics& statistics) {
@@ -63,7 +66,6 @@ void record(const SymmetricSolid& solid, Statistics& statistics) {
   reported.detected = found.fold_detected;
   reported.candidates = solid.candidates;
   statistics.repairs = solid.source->repairs();
-  statistics.warnings = warnings_of(solid);
 }
 
 Result<SymmetricSolid> at_its_fold(Result<std::unique_ptr<solid::SectorSource>> source,
@@ -120,6 +122,29 @@ Result<MeshOutcome> mesh_at_some_fold(SymmetricSolid& solid,
   return outcome;
 }
 
+void add_warnings(const PslgNotes& notes, std::vector<Warning>& warnings) {
+  std::vector<Warning> found = plane::warnings_of(notes);
+  warnings.insert(warnings.begin(), std::make_move_iterator(found.begin()),
+                  std::make_move_iterator(found.end()));
+}
+
+Result<plane::SymmetricPslg> symmetrise_pslg(const Pslg& pslg,
+                                             const MeshOptions& options,
+                                             ExecutionContext& context) {
+  if (!pslg.has_arcs()) {
+    SYMCELL_TRY(plane::validate_pslg(pslg, context));
+    return plane::symmetrise(pslg, options, context);
+  }
+  const auto chorded = plane::discretise_arcs(pslg, options, context);
+  if (!chorded) return error_of(chorded);
+  auto symmetric = plane::symmetrise(chorded->pslg, options, context);
+  if (symmetric) {
+    const double tolerance = options.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel);
+    plane::find_chords(chorded->pslg, tolerance * symmetric->diameter, *symmetric);
+  }
+  return symmetric;
+}
+
 // `symmetrise` makes the model symmetric, `mesh` meshes what that gives.
 template <class Symmetrise, class Mesh>
 Result<MeshOutcome> run(const Symmetrise& symmetrise,
@@ -136,13 +161,58 @@ Result<MeshOutcome> run(const Symmetrise& symmetrise,
   if (!outcome) return outcome;
   Statistics& statistics = outcome->statistics;
   record(*symmetric, statistics);
+  std::vector<Warning> found = warnings_of(*symmetric);
+  statistics.warnings.insert(statistics.warnings.begin(), std::make_move_iterator(found.begin()),
+                             std::make_move_iterator(found.end()));
   if (auto exempt = exempt_elements_warning(statistics.exempt, statistics.cell.elements)) {
     statistics.warnings.push_back(std::move(*exempt));
-    SYMCELL_TRY(check_strict(strict, statistics.warnings));
   }
+  SYMCELL_TRY(check_strict(strict, statistics.warnings));
   statistics.timings_ms.symmetry = symmetry_ms;
   statistics.timings_ms.total = total.lap();
   return outcome;
+}
+
+Result<MeshOutcome> mesh_planar(const Pslg& given,
+                                const MeshOptions& options,
+                                ExecutionContext& context) {
+  const auto input = plane::prepare_input(given, options, context);
+  if (!input) return error_of(input);
+  const Pslg& pslg = *input ? (*input)->pslg : given;
+  const MeshOptions& own = *input ? (*input)->options : options;
+  const auto symmetrise = [&] {
+    auto symmetric = symmetrise_pslg(pslg, own, context);
+    if (symmetric) add_warnings(pslg.notes, symmetric->warnings);
+    return symmetric;
+  };
+  const auto mesh = [&](const plane::SymmetricPslg& symmetric) {
+    return plane::mesh_pslg(pslg, symmetric, own, context);
+  };
+  auto outcome = run(symmetrise, mesh, options.strict, context);
+  if (!outcome) return outcome;
+  outcome->mesh.marker_names = pslg.marker_names;
+  outcome->statistics.symmetry.antiperiodic = regions_alternate(outcome->mesh);
+  return outcome;
+}
+
+Result<PslgInspection> inspect_planar(const Pslg& given,
+                                      const MeshOptions& options,
+                                      ExecutionContext& context) {
+  const auto input = plane::prepare_input(given, options, context);
+  if (!input) return error_of(input);
+  const Pslg& pslg = *input ? (*input)->pslg : given;
+  const MeshOptions& own = *input ? (*input)->options : options;
+  Result<PslgInspection> found;
+  if (pslg.has_arcs()) {
+    const auto chorded = plane::discretise_arcs(pslg, own, context);
+    if (!chorded) return error_of(chorded);
+    found = plane::inspect_pslg(chorded->pslg, own, context);
+  } else {
+    SYMCELL_TRY(plane::validate_pslg(pslg, context));
+    found = plane::inspect_pslg(pslg, own, context);
+  }
+  if (found) add_warnings(pslg.notes, found->warnings);
+  return found;
 }
 
 template <class Found>
@@ -157,18 +227,7 @@ Result<Inspection> checked(Result<Found> found, bool strict) {
 Result<MeshOutcome> mesh_model(const Model& model,
                                const MeshOptions& options,
                                ExecutionContext& context) {
-  if (const auto* pslg = std::get_if<Pslg>(&model)) {
-    const auto symmetrise = [&]() -> Result<plane::SymmetricPslg> {
-      SYMCELL_TRY(plane::validate_pslg(*pslg, context));
-      return plane::symmetrise(*pslg, options, context);
-    };
-    const auto mesh = [&](const plane::SymmetricPslg& symmetric) -> Result<MeshOutcome> {
-      const auto sizes = plane::resolve_sizes(*pslg, symmetric, options.sizes);
-      if (!sizes) return error_of(sizes);
-      return plane::mesh_pslg(symmetric, options, *sizes, context);
-    };
-    return run(symmetrise, mesh, options.strict, context);
-  }
+  if (const auto* pslg = std::get_if<Pslg>(&model)) return mesh_planar(*pslg, options, context);
   const auto mesh = [&](SymmetricSolid& solid) {
     return mesh_at_some_fold(solid, options, context);
   };
@@ -187,8 +246,7 @@ Result<Inspection> inspect_model(const Model& model,
                                  const MeshOptions& options,
                                  ExecutionContext& context) {
   if (const auto* pslg = std::get_if<Pslg>(&model)) {
-    SYMCELL_TRY(plane::validate_pslg(*pslg, context));
-    return checked(plane::inspect_pslg(*pslg, options, context), options.strict);
+    return checked(inspect_planar(*pslg, options, context), options.strict);
   }
   if (const auto* plc = std::get_if<Plc>(&model)) {
     return checked(solid::inspect_plc(*plc, options, context), options.strict);

@@ -4,6 +4,8 @@
 //   15 double axis origin, axis direction, frame
 //   14 uint64 sizes of the arrays in entries, in the order of `each_array`
 //   the arrays, one after the other
+//   the names of markers, up to the last 4 bytes: each its marker in decimals, a space, the name and a
+//             line feed
 //   uint32    CRC-32 of all bytes before
 #include "api/formats/cell_archive.hpp"
 
@@ -12,8 +14,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
 #include <cstring>
 #include <limits>
+#include <string>
 
 #include "api/formats/byte_writer.hpp"
 
@@ -55,6 +59,30 @@ struct Header {
   std::array<std::int32_t, 6> whole{};
   std::array<double, 15> real{};
 };
+
+// Names hold no line feeds: readers of models see to that.
+std::string names_text(const SymmetryCellMesh& m) {
+  std::string text;
+  for (const MarkerName& n : m.marker_names) {
+    text += std::to_string(n.marker) + " " + n.name + "\n";
+  }
+  return text;
+}
+
+// Whether the text is one.
+bool read_names(std::string_view text, std::vector<MarkerName>& names) {
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n'), space = text.find(' ');
+    if (end == std::string_view::npos || space >= end) return false;
+    MarkerName name;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + space, name.marker);
+    if (error != std::errc{} || stop != text.data() + space) return false;
+    name.name = text.substr(space + 1, end - space - 1);
+    names.push_back(std::move(name));
+    text.remove_prefix(end + 1);
+  }
+  return true;
+}
 
 Header header_of(const SymmetryCellMesh& m) {
   Header h{{m.dimension, m.order, m.fold, m.nodes_per_element, m.nodes_per_facet,
@@ -148,6 +176,7 @@ Result<void> write_cell_archive(const SymmetryCellMesh& cell, const Sink& sink) 
   each_array(cell, [&](const auto& array) { out.value(std::uint64_t{array.size()}); });
   each_array(cell,
              [&](const auto& array) { out.raw(array.data(), array.size() * entry_size(array)); });
+  out.text(names_text(cell));
   out.flush();
   out.value(static_cast<std::uint32_t>(crc));
   return out.finish();
@@ -176,9 +205,6 @@ Result<SymmetryCellMesh> read_cell_archive(std::string_view bytes) {
     ++i;
   });
   if (!fits) return fail(ErrorCode::kTruncated, "the archive is shorter than its header says");
-  if (expected != bytes.size()) {
-    return fail(ErrorCode::kSyntax, "the archive is longer than its header says");
-  }
   std::uint32_t stored = 0;
   std::memcpy(&stored, bytes.data() + bytes.size() - 4, 4);
   const uLong crc = crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size() - 4);
@@ -191,6 +217,10 @@ Result<SymmetryCellMesh> read_cell_archive(std::string_view bytes) {
     if (size > 0) std::memcpy(array.data(), at, size);
     at += size;
   });
+  const auto name_bytes = static_cast<std::size_t>(bytes.data() + bytes.size() - 4 - at);
+  if (!read_names({at, name_bytes}, mesh.marker_names)) {
+    return fail(ErrorCode::kSyntax, "the archive is longer than its header says");
+  }
   if (const std::string_view rule = broken_rule(mesh); !rule.empty()) {
     return fail(ErrorCode::kSyntax, "the archive is damaged: " + std::string(rule) + " do not fit");
   }

@@ -109,8 +109,9 @@ const JsonPlace& JsonWalker::expected() const {
 bool JsonWalker::open(JsonShape shape, const char* what) {
   const JsonPlace* place = &expected();
   if (place->shape != JsonShape::kIgnored && place->shape != shape) {
-    misplaced(what);
-    place = &kIgnoredPlace;
+    const JsonPlace* other = other_shape(*place, shape);
+    if (other == nullptr) misplaced(what);
+    place = other != nullptr ? other : &kIgnoredPlace;
   }
   if (frames_.size() == kMostDepth) {
     fatal_ = Error{ErrorCode::kJsonTooDeep,

@@ -65,6 +65,11 @@ class JsonWalker {
   [[nodiscard]] virtual const JsonPlace* member(const JsonPlace& object,
                                                 std::string_view key) const = 0;
   [[nodiscard]] virtual const JsonPlace& item(const JsonPlace& list) const = 0;
+  // What stands at a place in the other shape, where both a list and an object may; nullptr: nothing.
+  [[nodiscard]] virtual const JsonPlace* other_shape(const JsonPlace& /*place*/,
+                                                     JsonShape /*shape*/) const {
+    return nullptr;
+  }
   // The keys of an object, for the message about one that it has not.
   [[nodiscard]] virtual const char* keys_of(const JsonPlace& object) const = 0;
   virtual void begin(const JsonPlace& /*place*/) {}

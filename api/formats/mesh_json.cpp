@@ -1,3 +1,6 @@
+#include <nlohmann/json.hpp>
+#include <string>
+
 #include "api/formats/mesh_formats.hpp"
 
 namespace symcell::internal {
@@ -68,6 +71,12 @@ void write_head(const SymmetryCellMesh& cell, ByteWriter& out) {
   out.text(",\"direction\":");
   write_point(out, cell.axis_direction, 3);
   out.character('}');
+  if (cell.marker_names.empty()) return;
+  out.text(",\n\"marker_names\":");
+  nlohmann::ordered_json names;
+  for (const MarkerName& n : cell.marker_names) names[std::to_string(n.marker)] = n.name;
+  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;  // what is no UTF-8
+  out.text(names.dump(-1, ' ', false, kReplace));
 }
 
 // Per-element integers.

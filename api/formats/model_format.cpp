@@ -8,7 +8,7 @@
 namespace symcell {
 namespace {
 
-constexpr std::array<ModelFormatInfo, 9> kFormats{{
+constexpr std::array<ModelFormatInfo, 11> kFormats{{
     {ModelFormat::kPslgJson, ModelKind::kPslg, "pslg_json", ".json", "application/json"},
     {ModelFormat::kPlcJson, ModelKind::kPlc, "plc_json", ".json", "application/json"},
     {ModelFormat::kPoly, ModelKind::kPslg, "poly", ".poly", "text/plain"},
@@ -18,6 +18,8 @@ constexpr std::array<ModelFormatInfo, 9> kFormats{{
     {ModelFormat::kOff, ModelKind::kSurface, "off", ".off", "model/vnd.off"},
     {ModelFormat::kPly, ModelKind::kSurface, "ply", ".ply", "model/ply"},
     {ModelFormat::kObj, ModelKind::kSurface, "obj", ".obj", "model/obj"},
+    {ModelFormat::kDxf, ModelKind::kPslg, "dxf", ".dxf", "image/vnd.dxf"},
+    {ModelFormat::kFem, ModelKind::kPslg, "fem", ".fem", "text/plain"},
 }};
 
 // What else a format may be called by those who send it.
@@ -41,6 +43,11 @@ constexpr std::array kMediaTypes{
     std::pair{"application/x-ply", ModelFormat::kPly},
     std::pair{"model/obj", ModelFormat::kObj},
     std::pair{"application/x-tgif", ModelFormat::kObj},  // what some systems take .obj for
+    std::pair{"image/vnd.dxf", ModelFormat::kDxf},
+    std::pair{"image/x-dxf", ModelFormat::kDxf},
+    std::pair{"application/dxf", ModelFormat::kDxf},
+    std::pair{"application/x-dxf", ModelFormat::kDxf},
+    std::pair{"model/x-femm", ModelFormat::kFem},
 };
 
 std::string lower(std::string_view text) {

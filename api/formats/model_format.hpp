@@ -18,7 +18,9 @@ enum class ModelFormat : std::uint8_t {
   kStl,
   kOff,
   kPly,
-  kObj
+  kObj,
+  kDxf,
+  kFem  // FEMM's
 };
 
 struct ModelFormatInfo {

@@ -1,10 +1,14 @@
 #include "api/formats/model_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <string>
 #include <utility>
 
+#include "api/formats/dxf.hpp"
+#include "api/formats/dxf_scan.hpp"
+#include "api/formats/fem.hpp"
 #include "api/formats/gzip.hpp"
 #include "api/formats/obj.hpp"
 #include "api/formats/off.hpp"
@@ -19,7 +23,7 @@ namespace symcell {
 namespace {
 
 constexpr const char* kKnown =
-    "send JSON (a planar or a solid model), .poly, .smesh, STL, OFF, PLY or OBJ";
+    "send JSON (a planar or a solid model), DXF, FEMM's .fem, .poly, .smesh, STL, OFF, PLY or OBJ";
 
 std::string lower(std::string_view text) {
   std::string result(text);
@@ -45,6 +49,8 @@ std::optional<ModelFormat> plain_format(std::string_view bytes, std::string_view
     return ModelFormat::kStl;
   }
   if (is_off_keyword(text.substr(0, text.find_first_of(" \t\r\n")))) return ModelFormat::kOff;
+  if (looks_like_dxf(bytes)) return ModelFormat::kDxf;
+  if (looks_like_fem(bytes)) return ModelFormat::kFem;
   if (looks_like_binary_stl(bytes)) return ModelFormat::kStl;
   return std::nullopt;
 }
@@ -66,11 +72,21 @@ std::optional<ModelFormat> guessed_format(std::string_view text) {
   return std::nullopt;
 }
 
+// Formats that are known and not read, by how their files begin.
+constexpr std::array kNotRead{
+    std::pair{"iso-10303", "this is a STEP file; export a solid as STL, a drawing as DXF"},
+    std::pair{"ac10", "this is a DWG file; save it as an ASCII DXF from the CAD program"},
+    std::pair{"$meshformat", "this is a Gmsh mesh, not a model; export the geometry as STL or DXF"},
+    std::pair{"<svg", "this is an SVG picture; convert its paths to DXF"},
+    std::pair{"dbrep_drawable", "this is a BREP file; export a solid as STL, a drawing as DXF"},
+    std::pair{"%pdf", "this is a PDF file; export the drawing as DXF"},
+};
+
 Failure unknown_format(std::string_view text) {
-  const std::string head = lower(text.substr(0, 16));
-  if (head.starts_with("iso-10303")) {
-    return fail(ErrorCode::kUnsupportedModel,
-                "this is a STEP file; export the part as STL from the CAD program");
+  const std::string head = lower(text.substr(0, 80));
+  for (const auto& [begin, what] : kNotRead) {
+    if (!head.starts_with(begin)) continue;
+    return fail(ErrorCode::kUnsupportedModel, std::string(what) + "; " + kKnown);
   }
   if (head.starts_with("pk\3\4")) {
     return fail(ErrorCode::kUnknownFormat,
@@ -98,6 +114,8 @@ Result<Model> read_as(ModelFormat format, std::string_view bytes) {
     case ModelFormat::kOff: return widened(read_off(bytes));
     case ModelFormat::kPly: return widened(read_ply(bytes));
     case ModelFormat::kObj: return widened(read_obj(bytes));
+    case ModelFormat::kDxf: return widened(read_dxf(bytes));
+    case ModelFormat::kFem: return widened(read_fem(bytes));
   }
   return fail(ErrorCode::kUnknownFormat, kKnown);
 }

@@ -121,13 +121,22 @@ class MshWriter {
       write_name(dimension_ - 1, kHigherTag, "higher_bound");
     }
     for (std::size_t g = 0; g < markers_.labels.size(); ++g) {
-      write_name(dimension_ - 1, kFirstMarkerTag + g,
-                 "boundary_" + std::to_string(markers_.labels[g]));
+      write_name(dimension_ - 1, kFirstMarkerTag + g, marker_name(markers_.labels[g]));
     }
     for (std::size_t g = 0; g < regions_.labels.size(); ++g) {
       write_name(dimension_, g + 1, "region_" + std::to_string(regions_.labels[g]));
     }
     out_.text("$EndPhysicalNames\n");
+  }
+
+  // As the model calls it; names are in quotes and hold none.
+  [[nodiscard]] std::string marker_name(std::int32_t marker) const {
+    const auto& names = mesh_.cell().marker_names;
+    const auto known = std::ranges::find(names, marker, &MarkerName::marker);
+    if (known == names.end()) return "boundary_" + std::to_string(marker);
+    std::string name = known->name;
+    std::ranges::replace(name, '"', '\'');
+    return name;
   }
 
   // One discrete entity: tag, bounding box, its physical group (of the same tag), no boundary.

@@ -5,6 +5,7 @@
 #include "api/formats/json_walker.hpp"
 #include "api/formats/text_numbers.hpp"
 #include "api/printable.hpp"
+#include "core/model/arc_centres.hpp"
 
 namespace symcell {
 namespace {
@@ -28,6 +29,12 @@ constexpr JsonPlace kAttribute{11, JsonShape::kNumber, "a number"};
 constexpr JsonPlace kMaxArea{12, JsonShape::kNumberOrNull, "a number"};
 constexpr JsonPlace kNumber{13, JsonShape::kNumber, "a number"};
 constexpr JsonPlace kComment{14, JsonShape::kIgnored, ""};
+// A segment may be an object, too: what is more than ends and a marker has a name.
+constexpr JsonPlace kSegmentObject{15, JsonShape::kObject, "[i, j] or {\"vertices\": [i, j], ...}"};
+constexpr JsonPlace kEnds{16, JsonShape::kList, "[i, j]"};
+constexpr JsonPlace kMarker{17, JsonShape::kNumber, "a whole number"};
+constexpr JsonPlace kBulge{18, JsonShape::kNumber, "a number"};
+constexpr JsonPlace kCenter{19, JsonShape::kList, "[x, y]"};
 
 class PslgReader final : public internal::JsonWalker {
  public:
@@ -35,6 +42,7 @@ class PslgReader final : public internal::JsonWalker {
 
   Result<Pslg> read() {
     SYMCELL_TRY(walk());
+    SYMCELL_TRY(resolve_arcs(centres_, pslg_));
     return std::move(pslg_);
   }
 
@@ -47,6 +55,13 @@ class PslgReader final : public internal::JsonWalker {
       if (key == "point") return &kPoint;
       if (key == "attribute") return &kAttribute;
       if (key == "max_area") return &kMaxArea;
+      return nullptr;
+    }
+    if (object.id == kSegmentObject.id) {
+      if (key == "vertices") return &kEnds;
+      if (key == "marker") return &kMarker;
+      if (key == "bulge") return &kBulge;
+      if (key == "center") return &kCenter;
       return nullptr;
     }
     if (key == "type") return &kType;
@@ -68,7 +83,13 @@ class PslgReader final : public internal::JsonWalker {
     }
   }
 
+  [[nodiscard]] const JsonPlace* other_shape(const JsonPlace& place,
+                                             JsonShape shape) const override {
+    return place.id == kSegment.id && shape == JsonShape::kObject ? &kSegmentObject : nullptr;
+  }
+
   [[nodiscard]] const char* keys_of(const JsonPlace& object) const override {
+    if (object.id == kSegmentObject.id) return "a segment has vertices, marker, bulge or center";
     return object.id == kRegion.id
                ? "a region has point, attribute, max_area"
                : "a planar model has type, vertices, segments, holes, regions (and name, comment, "
@@ -78,6 +99,11 @@ class PslgReader final : public internal::JsonWalker {
   void begin(const JsonPlace& place) override {
     numbers_ = {};
     if (place.id == kRegion.id) region_ = {};
+    if (place.id == kSegmentObject.id) {
+      segment_ = {};
+      bulge_ = 0;
+      centre_ = {};
+    }
   }
 
   void text(const JsonPlace& /*place*/, const std::string& value) override {
@@ -98,6 +124,10 @@ class PslgReader final : public internal::JsonWalker {
         complain(ErrorCode::kWrongType, "max_area must be positive; leave it out for no bound");
       }
       region_.max_area = value;
+    } else if (place.id == kMarker.id) {
+      segment_.marker = marker(value, "");
+    } else if (place.id == kBulge.id) {
+      bulge_ = value;
     } else {
       numbers_.add(value);
     }
@@ -108,6 +138,11 @@ class PslgReader final : public internal::JsonWalker {
       case kVertex.id: return add_point(pslg_.vertices);
       case kHole.id: return add_point(pslg_.holes);
       case kSegment.id: return add_segment();
+      case kSegmentObject.id: return add_arc(seen);
+      case kEnds.id: return take_ends();
+      case kCenter.id:
+        if (is_point()) centre_ = {numbers_.values[0], numbers_.values[1]};
+        return;
       case kRegion.id: return add_region(seen);
       case kModel.id: return check_complete(seen);
       case kPoint.id:
@@ -156,12 +191,46 @@ class PslgReader final : public internal::JsonWalker {
     PslgSegment segment;
     segment.a = index(numbers_.values[0], "/0");
     segment.b = index(numbers_.values[1], "/1");
-    if (numbers_.count == 3) {
-      const std::optional<std::int32_t> marker = whole_int32(numbers_.values[2]);
-      if (!marker) complain(ErrorCode::kWrongType, "a marker is a whole number of 32 bits", "/2");
-      segment.marker = marker.value_or(0);
+    if (numbers_.count == 3) segment.marker = marker(numbers_.values[2], "/2");
+    push_segment(segment);
+  }
+
+  std::int32_t marker(double value, const std::string& place) {
+    const std::optional<std::int32_t> marker = whole_int32(value);
+    if (!marker) complain(ErrorCode::kWrongType, "a marker is a whole number of 32 bits", place);
+    return marker.value_or(0);
+  }
+
+  void push_segment(const PslgSegment& segment) {
+    if (!has_room(pslg_.segments, 4 * kMaxPslgVertices)) return;
+    pslg_.segments.push_back(segment);
+    if (!pslg_.bulges.empty()) pslg_.bulges.push_back(0);
+  }
+
+  void take_ends() {
+    if (numbers_.count != 2) {
+      return complain(ErrorCode::kWrongType, "the ends of a segment are [i, j]; here are " +
+                                                 std::to_string(numbers_.count) + " numbers");
     }
-    if (has_room(pslg_.segments, 4 * kMaxPslgVertices)) pslg_.segments.push_back(segment);
+    segment_.a = index(numbers_.values[0], "/0");
+    segment_.b = index(numbers_.values[1], "/1");
+  }
+
+  void add_arc(std::uint32_t seen) {
+    if (!has(seen, kEnds)) {
+      return complain(ErrorCode::kMissingField,
+                      "the segment has no \"vertices\": its two ends, [i, j]");
+    }
+    if (has(seen, kBulge) && has(seen, kCenter)) {
+      return complain(ErrorCode::kWrongType,
+                      "a segment has a bulge or a center, not both; leave out one of them");
+    }
+    push_segment(segment_);
+    if (!has(seen, kBulge) && !has(seen, kCenter)) return;
+    pslg_.bulges.resize(pslg_.segments.size(), 0);
+    pslg_.bulges.back() = bulge_;
+    const auto last = static_cast<std::int32_t>(pslg_.segments.size()) - 1;
+    if (has(seen, kCenter)) centres_.push_back({last, centre_});
   }
 
   void add_region(std::uint32_t seen) {
@@ -187,6 +256,10 @@ class PslgReader final : public internal::JsonWalker {
   Pslg pslg_;
   JsonNumbers numbers_;
   PslgRegion region_;
+  PslgSegment segment_;
+  double bulge_ = 0;
+  Point2 centre_;
+  std::vector<ArcCentre> centres_;
 };
 
 }  // namespace

@@ -33,15 +33,20 @@ std::string write_pslg_json(const Pslg& pslg) {
   for (std::size_t i = 0; i < pslg.segments.size(); ++i) {
     const PslgSegment& s = pslg.segments[i];
     separate(i);
-    out.text("[");
+    const double bulge = pslg.bulge(i);
+    out.text(bulge == 0 ? "[" : "{\"vertices\":[");
     out.integer(s.a);
     out.text(",");
     out.integer(s.b);
+    if (bulge != 0) {
+      out.text("],\"bulge\":");
+      out.real(bulge);
+    }
     if (s.marker != 0) {
-      out.text(",");
+      out.text(bulge == 0 ? "," : ",\"marker\":");
       out.integer(s.marker);
     }
-    out.text("]");
+    out.text(bulge == 0 ? "]" : "}");
   }
   out.text("],\"holes\":[");
   for (std::size_t i = 0; i < pslg.holes.size(); ++i) {

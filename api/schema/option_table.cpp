@@ -216,6 +216,28 @@ Result<void> set_min_dihedral(const OptionInfo& info,
   return {};
 }
 
+Result<void> set_sector(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
+  const std::optional<std::uint64_t> sectors = as_whole(value);
+  if (!sectors || *sectors < 2 || *sectors > static_cast<std::uint64_t>(kMaxFold)) {
+    return refuse(ErrorCode::kBadFold, info, value,
+                  "a whole number from 2 to " + std::to_string(kMaxFold) +
+                      "; leave it out for a whole model");
+  }
+  options.sector = static_cast<std::int32_t>(*sectors);
+  return {};
+}
+
+Result<void> set_chord_error(const OptionInfo& info,
+                             const OptionValue& value,
+                             MeshOptions& options) {
+  const Result<double> number =
+      in_range(info, value, 0, false, kMaxChordErrorRel,
+               "a number above 0, at most 0.1 (a share of the arc's radius)");
+  if (!number) return error_of(number);
+  options.chord_error_rel = *number;
+  return {};
+}
+
 Result<void> set_flag(const OptionInfo& info, const OptionValue& value, bool& flag) {
   const std::optional<bool> given = as_bool(value);
   if (!given) return refuse(ErrorCode::kBadOption, info, value, "true or false");
@@ -359,7 +381,7 @@ Json get_symmetry_tolerance(const MeshOptions& o, ModelKind kind) {
 }
 
 Json get_repair(const MeshOptions& o, ModelKind kind) {
-  if (kind != ModelKind::kSurface) return nullptr;
+  if (kind == ModelKind::kPlc) return nullptr;
   for (const auto& [name, repair] : kRepairs) {
     if (repair == o.repair) return name;
   }
@@ -439,10 +461,16 @@ constexpr auto kRows = std::to_array<OptionRow>({
       "how far the model may be from symmetric, as a share of its diameter, above 0 to 0.1", kAll},
      set_symmetry_tolerance,
      get_symmetry_tolerance},
+    {{"sector", "N", "",
+      "planar: the model is one of N equal sectors about center, or 0,0; its copies are made",
+      kPlanar},
+     set_sector,
+     [](const MeshOptions& o, ModelKind) { return o.sector ? Json(*o.sector) : Json(nullptr); }},
     {{"repair", "none|safe|all|wrap", "safe",
       "STL, OFF, PLY, OBJ: what is mended; safe: the shape stays; all: holes are closed, too; "
-      "wrap: what else would be refused is wrapped",
-      kSolids},
+      "wrap: what else would be refused is wrapped; planar: safe: loose ends are joined; all: "
+      "doubles are, too, crossings are split, overlaps merged",
+      kAll},
      set_repair,
      get_repair},
     {{"min_angle", "DEG", "30", "planar: smallest angle of a triangle in degrees, 0 to 42",
@@ -479,6 +507,11 @@ constexpr auto kRows = std::to_array<OptionRow>({
      get_sizes},
     flag_row<&MeshOptions::keep_boundary>(
         {"keep_boundary", "", "", "planar: no new points on what bounds the domain", kPlanar}),
+    {{"chord_error", "E", "1e-3",
+      "planar: how far chords may be from their arcs, as a share of the radius, above 0 to 0.1",
+      kPlanar},
+     set_chord_error,
+     get_member<&MeshOptions::chord_error_rel>},
     flag_row<&MeshOptions::delaunay>(
         {"delaunay", "", "", "solids: a Delaunay mesh, at worse dihedral angles", kSolids}),
     {{"order", "1|2", "1", "1: linear elements; 2: quadratic, with mid-side nodes", kAll},

@@ -17,10 +17,11 @@ Failure not_of_kind(ModelKind kind, const std::string& name) {
 }
 
 Failure repair_is_for_surfaces() {
-  return fail(ErrorCode::kBadOption,
-              "repair is for tessellated surfaces (STL, OFF, PLY, OBJ); nothing is mended in other "
-              "models",
-              {}, "/options/repair");
+  return fail(
+      ErrorCode::kBadOption,
+      "repair is for tessellated surfaces (STL, OFF, PLY, OBJ) and planar models; nothing is "
+      "mended in a PLC",
+      {}, "/options/repair");
 }
 
 Failure bad_axis(const std::string& name, const std::string& message) {
@@ -46,7 +47,13 @@ Result<MeshOptions> options_for_planar(MeshOptions options) {
   if (options.min_dihedral_deg != standard.min_dihedral_deg) return refuse("min_dihedral");
   if (std::isfinite(options.max_volume)) return refuse("max_volume");
   if (options.delaunay) return refuse("delaunay");
-  if (options.repair != standard.repair) return repair_is_for_surfaces();
+  if (options.repair == Repair::kWrap) {
+    return fail(
+        ErrorCode::kBadOption,
+        "repair of a planar model is none, safe (loose ends are joined) or all; wrap is for "
+        "tessellated surfaces",
+        {}, "/options/repair");
+  }
   if (options.axis_direction &&
       (options.axis_direction->x != 0 || options.axis_direction->y != 0)) {
     return bad_axis("axis_direction",
@@ -85,6 +92,8 @@ Result<MeshOptions> options_for_solid(ModelKind kind, MeshOptions options) {
   if (options.min_edge > 0) return not_of_kind(kind, "min_edge");
   if (!options.sizes.empty()) return not_of_kind(kind, "sizes");
   if (options.keep_boundary) return not_of_kind(kind, "keep_boundary");
+  if (options.sector) return not_of_kind(kind, "sector");
+  if (options.chord_error_rel != standard.chord_error_rel) return not_of_kind(kind, "chord_error");
   return options;
 }
 

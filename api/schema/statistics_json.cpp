@@ -150,6 +150,7 @@ Json statistics_to_json(const Statistics& statistics, const MeshOptions& options
                       {"axis", axis_to_json(symmetry.axis_origin, symmetry.axis_direction)},
                       {"error", number(symmetry.error_rel)},
                       {"detected", symmetry.detected}};
+  if (symmetry.antiperiodic) json["symmetry"]["antiperiodic"] = true;
   if (!symmetry.candidates.empty()) {
     json["symmetry"]["candidates"] = estimates_to_json(symmetry.candidates);
   }

@@ -33,6 +33,23 @@ void count(const SymmetryCellMesh& cell, const FullMeshView& full, Statistics& s
   statistics.full.nodes = static_cast<std::uint64_t>(full.node_count());
 }
 
+// Between the straight sides of a quadratic triangle and its sides.
+double area_beside_chords(const SymmetryCellMesh& cell,
+                          const FullMeshView& full,
+                          std::size_t first) {
+  Point2 p[6];
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Point3 q = full.cell_node_position(static_cast<std::size_t>(cell.elements[first + i]));
+    p[i] = {q.x, q.y};
+  }
+  double area = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point2 a = p[i], side = p[(i + 1) % 3] - a;
+    area += 2.0 / 3.0 * cross(p[3 + i] - a - 0.5 * side, side);
+  }
+  return area;
+}
+
 }  // namespace
 
 void measure_cell_2(const SymmetryCellMesh& cell, Statistics& statistics) {
@@ -61,6 +78,7 @@ void measure_cell_2(const SymmetryCellMesh& cell, Statistics& statistics) {
       product *= std::sqrt(edge2);
     }
     c.measure += 0.5 * doubled;
+    if (cell.order == 2) c.measure += area_beside_chords(cell, full, e * stride);
     const double circumradius = product / (2 * doubled);
     c.max_radius_edge = std::max(c.max_radius_edge, circumradius / std::sqrt(shortest2));
     ++c.aspect_ratio_histogram[aspect_bin(longest2 / doubled)];

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <tuple>
 
 #include "core/base/assert.hpp"
 #include "core/cell/pair_images.hpp"
+#include "core/geometry/arc.hpp"
 
 namespace symcell {
 namespace {
@@ -32,6 +34,7 @@ class Elevation {
 
   SymmetryCellMesh run() {
     collect_edges();
+    find_arcs();
     add_orbits();
     add_nodes();
     result_.order = 2;
@@ -43,6 +46,7 @@ class Elevation {
     result_.higher_facets = with_mid_nodes(mesh_.higher_facets, mesh_.nodes_per_facet);
     mark_nodes();
     pair_bounds();
+    result_.boundary_bulges.clear();
     return std::move(result_);
   }
 
@@ -108,10 +112,31 @@ class Elevation {
     }
   }
 
+  // Bulges of arcs from the first to the second end of an edge's key.
+  void find_arcs() {
+    const auto k = static_cast<std::size_t>(mesh_.nodes_per_facet);
+    for (std::size_t f = 0; f < mesh_.boundary_bulges.size(); ++f) {
+      const double bulge = mesh_.boundary_bulges[f];
+      const OrbitVertex a = mesh_.nodes[static_cast<std::size_t>(mesh_.boundary[k * f])];
+      const OrbitVertex b = mesh_.nodes[static_cast<std::size_t>(mesh_.boundary[k * f + 1])];
+      const TurnedEdge edge = turned(a, b);
+      const bool same = edge.key.orbit_a == a.orbit && (on_axis(a) || edge.turn == a.exponent);
+      arcs_.emplace_back(edge.key, same ? bulge : -bulge);
+    }
+    // Facets on the bounds have two places; one that is straight makes the other straight.
+    std::ranges::sort(arcs_, {},
+                      [](const auto& arc) { return std::pair(arc.first, std::abs(arc.second)); });
+  }
+
   [[nodiscard]] Point3 midpoint(const EdgeKey& key) const {
     const Point3& a = mesh_.orbit_points[static_cast<std::size_t>(key.orbit_a)];
     const Point3& b = mesh_.orbit_points[static_cast<std::size_t>(key.orbit_b)];
     const Point2 turned_b = rotations_.rotate(Point2{b.x, b.y}, key.relative);
+    const auto arc = std::ranges::lower_bound(arcs_, key, {}, &std::pair<EdgeKey, double>::first);
+    if (arc != arcs_.end() && arc->first == key) {
+      const Point2 mid = arc_middle({a.x, a.y}, turned_b, arc->second);
+      return {mid.x, mid.y, a.z};
+    }
     return {0.5 * (a.x + turned_b.x), 0.5 * (a.y + turned_b.y), 0.5 * (a.z + b.z)};
   }
 
@@ -215,7 +240,8 @@ class Elevation {
   const SymmetryCellMesh& mesh_;
   RotationTable rotations_;
   SymmetryCellMesh result_;
-  std::vector<Edge> edges_;          // by nodes
+  std::vector<Edge> edges_;  // by nodes
+  std::vector<std::pair<EdgeKey, double>> arcs_;
   std::vector<std::size_t> by_key_;  // edges by key and turn
 };
 

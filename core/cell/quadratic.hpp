@@ -5,8 +5,9 @@
 
 namespace symcell {
 
-// The same mesh with one mid-side node an edge at its midpoint, shared between elements, and
-// between the bounds as one orbit; those of edges on the axis lie on it.  Triangles and
+// The same mesh with one mid-side node an edge, at its midpoint or, of a facet with a bulge, in the
+// middle of its arc; shared between elements, and between the bounds as one orbit; those of edges on
+// the axis lie on it.  Triangles and
 // tetrahedra, facets of both.  Requires: mesh.order == 1.  Cost: O(elements log elements).
 [[nodiscard]] SymmetryCellMesh elevate_to_quadratic(const SymmetryCellMesh& mesh);
 

@@ -52,6 +52,9 @@ struct Statistics {
     Point3 axis_direction{0, 0, 1};
     double error_rel = 0;  // of the model's diameter
     bool detected = false;
+    // Planar: the fold ignores markers and attributes, and from sector to sector some of these
+    // change to others and back: fields change their sign from cell to cell.
+    bool antiperiodic = false;
     // Solids whose fold was chosen: from which, descending; empty: nothing to choose from.
     std::vector<FoldEstimate> candidates;
   } symmetry;

@@ -22,6 +22,7 @@
 #include "core/geometry/orbit_vertex.hpp"
 #include "core/geometry/point.hpp"
 #include "core/geometry/rotation.hpp"
+#include "core/model/pslg.hpp"
 
 namespace symcell {
 
@@ -54,6 +55,12 @@ struct SymmetryCellMesh {
   std::vector<std::int32_t> boundary_markers;
   // 1 for a facet on the higher bound: the full mesh already has it as the image of a lower one.
   std::vector<std::uint8_t> boundary_is_higher_image;
+
+  // Per facet that of the arc which it is a chord of, from its first to its second node
+  // (core/geometry/arc.hpp); empty: all are straight. For elevating to order 2; not stored with a job.
+  std::vector<double> boundary_bulges;
+
+  std::vector<MarkerName> marker_names;  // of the model
 
   // The bounds: facet i of `lower` is mapped by +360/n onto facet i of `higher`, node by node.
   std::vector<std::int32_t> lower_facets;  // nodes_per_facet each

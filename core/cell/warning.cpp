@@ -23,6 +23,12 @@ std::string rounded_point(Point3 p) {
   return describe_rounded(p.x) + "," + describe_rounded(p.y) + "," + describe_rounded(p.z);
 }
 
+std::string listed(const std::vector<std::string>& texts, const char* between) {
+  std::string list;
+  for (const std::string& text : texts) list += (list.empty() ? "" : between) + text;
+  return list;
+}
+
 }  // namespace
 
 std::string_view warning_code_name(WarningCode code) {
@@ -33,6 +39,10 @@ std::string_view warning_code_name(WarningCode code) {
     case WarningCode::kAxisAmbiguous: return "axis_ambiguous";
     case WarningCode::kSurfaceRepaired: return "surface_repaired";
     case WarningCode::kMarkersBreakSymmetry: return "markers_break_symmetry";
+    case WarningCode::kLoopsJoined: return "loops_joined";
+    case WarningCode::kEntitiesLeftOut: return "entities_left_out";
+    case WarningCode::kModelRepaired: return "model_repaired";
+    case WarningCode::kArcsAsChords: return "arcs_as_chords";
     case WarningCode::kExemptElements: return "exempt_elements";
   }
   return "unknown";
@@ -106,6 +116,36 @@ Warning surface_repaired_warning(const std::vector<std::string>& repairs) {
   for (std::size_t i = 0; i < repairs.size(); ++i) text += (i > 0 ? "; " : "") + repairs[i];
   return {WarningCode::kSurfaceRepaired, std::move(text),
           "look at the places named, and mend the model where that is not what it should be"};
+}
+
+Warning loops_joined_warning(std::size_t ends, double widest) {
+  return {WarningCode::kLoopsJoined,
+          std::to_string(ends) + (ends == 1 ? " end of a segment was" : " ends of segments were") +
+              " joined with others up to " + describe_rounded(widest) + " away",
+          "let the segments share their vertices"};
+}
+
+Warning entities_left_out_warning(const std::vector<std::string>& left_out) {
+  return {WarningCode::kEntitiesLeftOut, "of the drawing was left out: " + listed(left_out, ", "),
+          "explode them to lines and arcs if they belong to the model"};
+}
+
+Warning model_repaired_warning(const std::vector<std::string>& repairs) {
+  return {WarningCode::kModelRepaired, "the model was repaired: " + listed(repairs, "; "),
+          "look at the places named, and mend the model where that is not what it should be"};
+}
+
+Warning arcs_as_chords_warning(std::size_t vertices, std::size_t sides) {
+  std::string text;
+  if (vertices > 0) {
+    text = std::to_string(vertices) + " vertices of the cell lie on chords, beside their arcs";
+  }
+  if (sides > 0) {
+    text += (text.empty() ? "" : "; ") + std::to_string(sides) +
+            " sides of the cell are straight, as their triangles would fold along the arcs";
+  }
+  return {WarningCode::kArcsAsChords, std::move(text),
+          "lower chord_error, or widen the gaps that arcs leave there"};
 }
 
 std::optional<Warning> exempt_elements_warning(const std::vector<ExemptCount>& exempt,

@@ -2,6 +2,7 @@
 // in a sentence with figures, and what the user can do about it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,6 +23,10 @@ enum class WarningCode : std::uint8_t {
   kAxisAmbiguous,         // other axes have the same fold
   kSurfaceRepaired,       // the surface was mended before
   kMarkersBreakSymmetry,  // the geometry alone has a larger fold
+  kLoopsJoined,           // ends that stood beside each other were joined
+  kEntitiesLeftOut,       // a drawing holds what is no part of a model
+  kModelRepaired,         // a planar model was mended on request
+  kArcsAsChords,          // vertices or sides of the mesh lie beside the arcs they belong to
   kExemptElements,        // many elements break a bound that the input forces them to
 };
 
@@ -63,6 +68,13 @@ struct Warning {
 [[nodiscard]] Warning axis_ambiguous_warning(std::int32_t fold, Point3 origin, Point3 direction);
 // Requires: `repairs` is not empty.
 [[nodiscard]] Warning surface_repaired_warning(const std::vector<std::string>& repairs);
+// `widest`: largest distance of ends that were joined, input units.
+[[nodiscard]] Warning loops_joined_warning(std::size_t ends, double widest);
+// Requires: the lists are not empty.
+[[nodiscard]] Warning entities_left_out_warning(const std::vector<std::string>& left_out);
+[[nodiscard]] Warning model_repaired_warning(const std::vector<std::string>& repairs);
+// Per cell: `vertices` on chords, `sides` without a middle on their arc; not both 0.
+[[nodiscard]] Warning arcs_as_chords_warning(std::size_t vertices, std::size_t sides);
 // Where more than 0.5 % of a cell's `elements` are exempt.
 [[nodiscard]] std::optional<Warning> exempt_elements_warning(const std::vector<ExemptCount>& exempt,
                                                              std::uint64_t elements);

@@ -15,6 +15,9 @@ inline constexpr double kMaxMinAngleDeg = 42.0;
 // Exponents fit 16 bits in the triangulation; no real part comes near it.
 inline constexpr std::int32_t kMaxFold = 30'000;
 
+// Chords of 52 degrees: coarser ones are no longer a picture of an arc.
+inline constexpr double kMaxChordErrorRel = 0.1;
+
 inline constexpr double kExactSymmetryToleranceRel = 1e-6;    // PSLG and PLC
 inline constexpr double kSurfaceSymmetryToleranceRel = 1e-3;  // tessellated surfaces
 
@@ -47,17 +50,20 @@ struct MeshOptions {
   std::optional<Point3> axis_direction;  // solids; nullopt: detect; not the zero vector
   // Of the model's diameter (bounding-box diagonal); nullopt: the default of the kind of model.
   std::optional<double> symmetry_tolerance_rel;
-  double min_angle_deg = 30;                // planar
-  double max_area = kInfinity;              // planar; input units squared
-  double radius_edge = 1.414;               // solids: circumradius / shortest edge
-  double max_volume = kInfinity;            // solids; input units cubed
-  double min_dihedral_deg = 0;              // solids: a goal of the improvement, not a promise
-  Repair repair = Repair::kSafe;            // surfaces
-  bool delaunay = false;                    // solids: end with a Delaunay mesh
-  double max_edge = kInfinity;              // input units
-  double min_edge = 0;                      // input units; of edges that refinement makes
-  std::vector<SizeRequest> sizes;           // planar
-  bool keep_boundary = false;               // planar: no new points on what bounds the domain
+  double min_angle_deg = 30;       // planar
+  double max_area = kInfinity;     // planar; input units squared
+  double radius_edge = 1.414;      // solids: circumradius / shortest edge
+  double max_volume = kInfinity;   // solids; input units cubed
+  double min_dihedral_deg = 0;     // solids: a goal of the improvement, not a promise
+  Repair repair = Repair::kSafe;   // surfaces
+  bool delaunay = false;           // solids: end with a Delaunay mesh
+  double max_edge = kInfinity;     // input units
+  double min_edge = 0;             // input units; of edges that refinement makes
+  std::vector<SizeRequest> sizes;  // planar
+  bool keep_boundary = false;      // planar: no new points on what bounds the domain
+  // Planar: the model is one of that many equal sectors about the centre; nullopt: it is whole.
+  std::optional<std::int32_t> sector;
+  double chord_error_rel = 1e-3;            // planar: of chords from their arcs, of the radius
   std::int32_t order = 1;                   // 1: linear, 2: quadratic with mid-side nodes
   std::uint64_t max_elements = 50'000'000;  // of the cell
   double time_limit_s = kInfinity;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +12,8 @@
 #include "core/cell/measure_cell.hpp"
 #include "core/cell/quadratic.hpp"
 #include "core/guard/check_cell.hpp"
+#include "core/guard/check_curved.hpp"
+#include "core/plane/arcs/split_chords.hpp"
 #include "core/plane/cut/build_cell_mesh.hpp"
 #include "core/plane/cut/cut_cell.hpp"
 #include "core/plane/delaunay/insert.hpp"
@@ -18,6 +22,7 @@
 #include "core/plane/quotient/validate.hpp"
 #include "core/plane/refine/coarsen.hpp"
 #include "core/plane/refine/criteria.hpp"
+#include "core/plane/refine/local_sizes.hpp"
 #include "core/plane/refine/refiner.hpp"
 
 namespace symcell::plane {
@@ -197,10 +202,89 @@ Result<WorkDone> refine_from_starts(InitialTriangulation& start,
   return best;
 }
 
+struct Refined {
+  InitialTriangulation start;  // with the refined mesh
+  SegmentCover wanted;         // of the mesh before
+  Criteria criteria;
+  WorkDone work;
+};
+
+Result<Refined> refine(const Pslg& model,
+                       const SymmetricPslg& symmetric,
+                       const MeshOptions& options,
+                       Stopwatch& watch,
+                       Statistics& stats,
+                       ExecutionContext& context) {
+  const auto sizes = resolve_sizes(model, symmetric, options.sizes);
+  if (!sizes) return error_of(sizes);
+  auto start = triangulate_initial(symmetric, context);
+  if (!start) return error_of(start);
+  stats.timings_ms.initial += watch.lap();
+  Criteria criteria(start->mesh, start->subdomains, options, *sizes);
+  SYMCELL_TRY(check_area_budget(*start, criteria, context));
+  SegmentCover wanted = measure_segment_cover(start->mesh);
+  auto work = refine_from_starts(*start, criteria, options, *sizes, symmetric.centre, context);
+  if (!work) return error_of(work);
+  stats.timings_ms.refine += watch.lap();
+  return Refined{std::move(*start), std::move(wanted), std::move(criteria), std::move(*work)};
+}
+
+// Vertices that refinement sets on chords belong on the arcs: they become vertices of the model
+// there, and meshing begins anew, until no chord is split. Each round leaves a quarter of the
+// distance between chord and arc. `symmetric` becomes what was meshed last. Where the finer chords
+// cannot be meshed, as in a gap that they close, those before stay.
+Result<Refined> refine_on_arcs(const Pslg& model,
+                               SymmetricPslg& symmetric,
+                               const MeshOptions& options,
+                               Stopwatch& watch,
+                               Statistics& stats,
+                               ExecutionContext& context) {
+  constexpr int kMostRounds = 8;
+  auto best = refine(model, symmetric, options, watch, stats, context);
+  for (int round = 0; best && round < kMostRounds; ++round) {
+    auto closer = split_chords(symmetric, best->start.mesh);
+    if (!closer) break;
+    auto next = refine(model, *closer, options, watch, stats, context);
+    if (!next && is_limit(next.error().code)) return next;
+    if (!next) break;
+    symmetric = std::move(*closer);
+    best = std::move(next);
+  }
+  return best;
+}
+
 // Down to the Delaunay property, and that all of the domain is covered and nothing else.
 Result<void> check_mesh(const QuotientTriangulation& mesh, const SegmentCover& wanted) {
   SYMCELL_TRY(validate(mesh, ValidationLevel::kDelaunay));
   return compare_segment_covers(wanted, measure_segment_cover(mesh));
+}
+
+// With the middles of chords on their arcs, unless that would fold a triangle, as where two arcs
+// touch: such chords stay straight, and are counted.
+Result<SymmetryCellMesh> elevate(SymmetryCellMesh mesh, std::size_t& straightened) {
+  SymmetryCellMesh elevated = elevate_to_quadratic(mesh);
+  if (mesh.boundary_bulges.empty()) return elevated;
+  constexpr int kRounds = 2;  // a triangle without curved sides is not folded
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<std::size_t> folded = folded_elements(elevated);
+    if (folded.empty()) return elevated;
+    std::set<std::pair<std::int32_t, std::int32_t>> sides;
+    for (const std::size_t e : folded) {
+      const std::int32_t* corner = &mesh.elements[3 * e];
+      for (std::size_t i = 0; i < 3; ++i) {
+        sides.insert(std::minmax({corner[i], corner[(i + 1) % 3]}));
+      }
+    }
+    for (std::size_t f = 0; f < mesh.boundary_bulges.size(); ++f) {
+      const auto side = std::minmax({mesh.boundary[2 * f], mesh.boundary[2 * f + 1]});
+      if (mesh.boundary_bulges[f] == 0 || !sides.contains(side)) continue;
+      mesh.boundary_bulges[f] = 0;
+      ++straightened;
+    }
+    elevated = elevate_to_quadratic(mesh);
+  }
+  if (folded_elements(elevated).empty()) return elevated;
+  return fail(ErrorCode::kInternal, "a quadratic triangle with straight sides is folded");
 }
 
 // Steiner points are the vertices behind the `input_orbits` of the symmetrised model, a centre that
@@ -221,37 +305,44 @@ void record(const WorkDone& work,
 
 }  // namespace
 
-Result<MeshOutcome> mesh_pslg(const SymmetricPslg& symmetric,
+Result<MeshOutcome> mesh_pslg(const Pslg& model,
+                              const SymmetricPslg& symmetric,
                               const MeshOptions& options,
-                              const LocalSizes& sizes,
                               ExecutionContext& context) {
   MeshOutcome outcome;
   Statistics& stats = outcome.statistics;
   Stopwatch watch;
   context.report(Phase::kInitial, 0.08);
-  auto start = triangulate_initial(symmetric, context);
-  if (!start) return error_of(start);
-  stats.timings_ms.initial = watch.lap();
+  std::optional<SymmetricPslg> chorded;
+  if (!symmetric.bulges.empty()) chorded = symmetric;
+  const auto refined = chorded ? refine_on_arcs(model, *chorded, options, watch, stats, context)
+                               : refine(model, symmetric, options, watch, stats, context);
+  if (!refined) return error_of(refined);
+  const QuotientTriangulation& mesh = refined->start.mesh;
+  record(refined->work, mesh, symmetric.orbit_points.size(), stats.refinement);
 
-  const SegmentCover wanted = measure_segment_cover(start->mesh);
-  Criteria criteria(start->mesh, start->subdomains, options, sizes);
-  SYMCELL_TRY(check_area_budget(*start, criteria, context));
-  const auto work = refine_from_starts(*start, criteria, options, sizes, symmetric.centre, context);
-  if (!work) return error_of(work);
-  record(*work, start->mesh, symmetric.orbit_points.size(), stats.refinement);
-  stats.timings_ms.refine = watch.lap();
-
-  context.report(Phase::kCell, 0.92, start->mesh.triangle_count(), 1);
-  SYMCELL_TRY(check_mesh(start->mesh, wanted));
+  context.report(Phase::kCell, 0.92, mesh.triangle_count(), 1);
+  SYMCELL_TRY(check_mesh(mesh, refined->wanted));
   stats.timings_ms.check = watch.lap();
-  SYMCELL_TRY(count_exempt(start->mesh, criteria, stats));
-  auto cut = cut_cell(start->mesh);
+  SYMCELL_TRY(count_exempt(mesh, refined->criteria, stats));
+  auto cut = cut_cell(mesh);
   if (!cut) return error_of(cut);
-  outcome.mesh = build_cell_mesh(*start, *cut, symmetric);
+  outcome.mesh = build_cell_mesh(refined->start, *cut, chorded ? *chorded : symmetric);
   stats.timings_ms.cell = watch.lap();
   SYMCELL_TRY(check_cell(outcome.mesh));
   stats.timings_ms.check += watch.lap();
-  if (options.order == 2) outcome.mesh = elevate_to_quadratic(outcome.mesh);
+  std::size_t straightened = 0;
+  if (options.order == 2) {
+    auto elevated = elevate(std::move(outcome.mesh), straightened);
+    if (!elevated) return error_of(elevated);
+    outcome.mesh = std::move(*elevated);
+  }
+  if (chorded) {
+    const std::size_t off_arcs = vertices_on_chords(*chorded, mesh);
+    if (off_arcs + straightened > 0) {
+      stats.warnings.push_back(arcs_as_chords_warning(off_arcs, straightened));
+    }
+  }
   measure_cell_2(outcome.mesh, stats);
   stats.timings_ms.cell += watch.lap();
   stats.peak_memory_bytes = peak_memory_bytes();

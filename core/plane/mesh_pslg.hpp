@@ -6,16 +6,16 @@
 #include "core/base/execution_context.hpp"
 #include "core/cell/mesh_outcome.hpp"
 #include "core/model/mesh_options.hpp"
-#include "core/plane/refine/local_sizes.hpp"
+#include "core/model/pslg.hpp"
 #include "core/plane/symmetry/symmetric_pslg.hpp"
 
 namespace symcell::plane {
 
-// `symmetric`: the model made symmetric (symmetrise); `sizes`: what options.sizes means on it.
+// `symmetric`: `model` made symmetric (symmetrise).
 // Errors: all meshing and limit codes.  Same input and options: same bytes.
-[[nodiscard]] Result<MeshOutcome> mesh_pslg(const SymmetricPslg& symmetric,
+[[nodiscard]] Result<MeshOutcome> mesh_pslg(const Pslg& model,
+                                            const SymmetricPslg& symmetric,
                                             const MeshOptions& options,
-                                            const LocalSizes& sizes,
                                             ExecutionContext& context);
 
 }  // namespace symcell::plane

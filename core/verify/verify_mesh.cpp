@@ -4,9 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "core/geometry/point_tree.hpp"
 #include "core/geometry/resolution.hpp"
 #include "core/verify/against_model.hpp"
+#include "core/verify/model_as_meshed.hpp"
 #include "core/verify/support.hpp"
 #include "core/verify/symmetry.hpp"
 
@@ -33,6 +37,8 @@ constexpr double kRoundings = 16;
 // of what validation takes vertices of a model for one within, so that the edges which refinement
 // makes beside the nearest two that it lets pass are no faults.
 constexpr double kRoundingsApart = 8;
+// Of an edge: by which its mid-side node may be off the middle of the edge or of its arc.
+constexpr double kOnArc = 1e-5;
 
 class Verifier {
  public:
@@ -46,7 +52,7 @@ class Verifier {
   void run() {
     if (!internal::check_fields(cell_, "cell", checks_)) return;
     const internal::Turns turns(cell_);
-    examine_model();
+    examine_model(turns);
     diameter_ = the_diameter(turns);
     magnitude_ = magnitude();
     const double rounding = std::numeric_limits<double>::epsilon() * magnitude_;
@@ -77,17 +83,78 @@ class Verifier {
  private:
   [[nodiscard]] bool plane() const { return cell_.dimension == 2; }
 
-  void examine_model() {
+  void examine_model(const internal::Turns& turns) {
     if (model_ == nullptr) return;
     if (is_planar(kind_of(*model_)) != plane()) {
       checks_.add("model.valid", false, "the model has another dimension than the mesh");
       return;
     }
-    Result<ExaminedModel> examined = internal::examine_model(*model_);
+    if (!make_as_meshed(turns)) return;
+    Result<ExaminedModel> examined = internal::examine_model(as_meshed_ ? *as_meshed_ : *model_);
     checks_.add("model.valid", examined.has_value(), examined ? "" : examined.error().message);
     if (!examined) return;
     examined_ = std::move(*examined);
     model_known_ = true;
+  }
+
+  // Planar models are compared as they were meshed.
+  bool make_as_meshed(const internal::Turns& turns) {
+    const auto* pslg = std::get_if<Pslg>(model_);
+    if (pslg == nullptr) return true;
+    auto made = internal::model_as_meshed(*pslg, corners_of_full(turns), options_);
+    if (!made) {
+      checks_.add("model.valid", false, made.error().message);
+      return false;
+    }
+    if (!*made) return true;
+    if (pslg->has_arcs()) {
+      const std::string& coarse = (*made)->coarse;
+      const std::string beside = mid_node_beside_arcs(turns, (*made)->arc_middles);
+      checks_.add("model.arcs", coarse.empty() && beside.empty(), coarse + beside);
+    }
+    as_meshed_ = std::move((*made)->pslg);
+    return true;
+  }
+
+  [[nodiscard]] std::vector<Point3> corners_of_full(const internal::Turns& turns) const {
+    const MeshData& mesh = full_ != nullptr ? *full_ : cell_;
+    std::vector<char> is_corner(mesh.points.size(), 0);
+    const auto k = static_cast<std::size_t>(mesh.nodes_per_element);
+    for (std::size_t e = 0; e < mesh.elements.size(); e += k) {
+      for (std::size_t i = 0; i < 3; ++i)
+        is_corner[static_cast<std::size_t>(mesh.elements[e + i])] = 1;
+    }
+    std::vector<Point3> corners;
+    for (std::int32_t s = 0; s < (full_ != nullptr ? 1 : cell_.fold); ++s) {
+      for (std::size_t i = 0; i < is_corner.size(); ++i) {
+        if (is_corner[i] != 0) corners.push_back(turns.rotated(mesh.points[i], s));
+      }
+    }
+    return corners;
+  }
+
+  // Names a mid-side node of the cell that is neither at its midpoint nor on an arc.
+  [[nodiscard]] std::string mid_node_beside_arcs(const internal::Turns& turns,
+                                                 const std::vector<Point3>& arc_middles) const {
+    if (cell_.order != 2) return {};
+    const PointTree tree(arc_middles);
+    for (std::size_t e = 0; e < cell_.element_count(); ++e) {
+      const std::int32_t* node = &cell_.elements[6 * e];
+      const auto place = [&](std::size_t i) {
+        return cell_.points[static_cast<std::size_t>(node[i])];
+      };
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Point3 a = place(i), b = place((i + 1) % 3), m = place(3 + i);
+        const double size = distance(a, b);
+        if (distance(m, 0.5 * (a + b)) <= kOnArc * size) continue;
+        bool on = false;
+        for (std::int32_t s = 0; s < cell_.fold && !on; ++s) {
+          on = tree.nearest(turns.rotated(m, s)).distance <= kOnArc * size;
+        }
+        if (!on) return "mid-side node " + std::to_string(node[3 + i]) + " is beside its arc";
+      }
+    }
+    return {};
   }
 
   // The model's own where it is known: a box round a skew solid is larger than one along its axis.
@@ -238,6 +305,7 @@ class Verifier {
   const MeshData& cell_;
   const MeshData* full_;
   const Model* model_;
+  std::optional<Model> as_meshed_;
   const VerifyOptions& options_;
   Checks checks_;
   ExaminedModel examined_;

@@ -11,7 +11,8 @@
 //   *.orientation           elements are positive, exactly
 //   *.duplicates            no two nodes at one place
 //   *.conforming            a facet has at most two elements, from opposite sides
-//   *.mid_nodes             order 2: one node an edge and one edge a node, at the midpoint
+//   *.mid_nodes             order 2: one node an edge and one edge a node, at the midpoint; planar:
+//                           or so near it on the bisector that the triangles are not folded
 //   *.vertex_links          elements at a node hang together by facets
 //   *.edge_links            solids: likewise round an edge; both exempt where the model itself
 //                           pinches, which the program computes from the model alone
@@ -44,6 +45,8 @@
 //
 // Against a PSLG or PLC:
 //
+//   model.arcs              PSLG: arcs have nodes on them, no more than 60 degrees apart, and
+//                           mid-side nodes beside their edges are on arcs
 //   model.vertices          vertices of the domain are nodes
 //   model.segments          its segments are chains of mesh edges
 //   model.facets            PLC: its facets are unions of mesh faces, by area
@@ -96,6 +99,10 @@ struct VerifyOptions {
   std::optional<double> model_tolerance_rel;
   std::optional<double> min_angle_deg;  // planar: the bound that the mesh was made with
   std::optional<double> model_measure;  // area or volume; nullopt: computed from the model
+  // Of planar models, as they were meshed with (MeshOptions).
+  std::optional<std::int32_t> sector;
+  std::optional<Point2> center;
+  Repair repair = Repair::kSafe;
   std::size_t most_restored_nodes = 200'000'000;  // beyond: full.* without a file are skipped
 };
 

@@ -3,6 +3,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/verify/verify_mesh.hpp"
 #include "server/cli/commands.hpp"
@@ -30,6 +32,9 @@ struct VerifyArguments {
   double tolerance = VerifyOptions{}.tolerance_rel;
   std::optional<double> model_tolerance;
   std::optional<double> min_angle;
+  std::optional<std::int32_t> sector;
+  std::vector<double> center;
+  std::string repair = "safe";
   bool json = false;
   bool quiet = false;
   bool json_errors = false;
@@ -77,6 +82,11 @@ Result<bool> verify(const VerifyArguments& arguments) {
   options.tolerance_rel = arguments.tolerance;
   options.model_tolerance_rel = arguments.model_tolerance;
   options.min_angle_deg = arguments.min_angle;
+  options.sector = arguments.sector;
+  if (arguments.center.size() == 2) options.center = {arguments.center[0], arguments.center[1]};
+  options.repair = arguments.repair == "all"    ? Repair::kAll
+                   : arguments.repair == "none" ? Repair::kNone
+                                                : Repair::kSafe;
   if (!arguments.model.empty()) {
     Result<Model> read = read_model_file(arguments.model);
     if (!read) return error_of(read);
@@ -118,6 +128,18 @@ void add_verify_command(CLI::App& app, int& exit_code) {
           "the model forces")
       ->type_name("DEG")
       ->check(CLI::Range(0.0, kMaxMinAngleDeg));
+  command
+      ->add_option("--sector", arguments->sector,
+                   "planar: the model is one of N sectors, as it was meshed with")
+      ->type_name("N")
+      ->check(CLI::Range(2, kMaxFold));
+  command->add_option("--center", arguments->center, "planar: the centre of the sectors [0,0]")
+      ->type_name("X,Y")
+      ->delimiter(',')
+      ->expected(2);
+  command->add_option("--repair", arguments->repair, "planar: as the model was meshed with [safe]")
+      ->type_name("none|safe|all")
+      ->check(CLI::IsMember({"none", "safe", "all"}));
   command->add_flag("--json", arguments->json, "the report as JSON");
   command->add_flag("-q,--quiet", arguments->quiet, "print failures only");
   command->add_flag("--json-errors", arguments->json_errors,

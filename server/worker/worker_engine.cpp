@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <string>
 #include <utility>
 
+#include "api/formats/dxf_scan.hpp"
+#include "api/formats/gzip.hpp"
 #include "server/base/metrics.hpp"
 #include "server/worker/local_engine.hpp"
 
@@ -18,6 +22,7 @@ constexpr int kMaxTries = 3;
 constexpr double kMaxReadSeconds = 60;
 // Read, a model takes a few times its bytes.
 constexpr std::uintmax_t kMaxBytesReadHere = std::uintmax_t{8} << 20U;
+constexpr std::size_t kHeadBytes = 16384;  // that show a drawing, comments before it included
 // What a job may take beyond its time limit before the kernel ends it, should the server not.
 constexpr std::uint64_t kCpuMarginSeconds = 5;
 
@@ -91,10 +96,21 @@ Result<void> WorkerEngine::run(const EngineJob& job, ExecutionContext& context) 
   return {};
 }
 
+// Drawings are read by a library that trusts its input; what is packed may be one.
+bool is_read_by_worker(const std::filesystem::path& model, std::optional<ModelFormat> promised) {
+  if (std::filesystem::file_size(model) > kMaxBytesReadHere) return true;
+  if (promised == ModelFormat::kDxf) return true;
+  std::string head(kHeadBytes, '\0');
+  std::ifstream file(model, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return is_gzip(head) || looks_like_dxf(head);
+}
+
 Result<ModelFormat> WorkerEngine::recognise(const std::filesystem::path& model,
                                             std::optional<ModelFormat> promised,
                                             ExecutionContext& context) {
-  if (std::filesystem::file_size(model) <= kMaxBytesReadHere) {
+  if (!is_read_by_worker(model, promised)) {
     return LocalEngine().recognise(model, promised, context);
   }
   RequestMessage request;

@@ -64,6 +64,24 @@ class UploadsTest(unittest.TestCase):
         request.write_text(json.dumps({"model": square(), "options": {"fold": 4}}))
         self.accepted("/v1/jobs", "-H", "Content-Type: application/json", "-d", f"@{request}")
 
+    def test_a_drawing_of_one_pole(self):
+        drawing = pathlib.Path(__file__).parent.parent / "data" / "models" / "motor_pole.dxf"
+        for arguments in (["-H", "Content-Type: image/vnd.dxf"], []):
+            job = self.accepted("/v1/jobs?sector=4&order=2&chord_error=0.01",
+                                "--data-binary", f"@{drawing}", *arguments)
+            self.assertEqual(job["model"]["format"], "dxf")
+            self.assertEqual(job["statistics"]["symmetry"]["fold"], 4)
+            status, body = self.curl(f"/v1/jobs/{job['id']}/cell?format=json")
+            self.assertEqual(status, 200)
+            self.assertIn("magnets", json.loads(body)["marker_names"].values())
+
+    def test_a_drawing_that_is_cut_off(self):
+        cut = self.folder / "cut.dxf"
+        cut.write_text("0\nSECTION\n2\nENTITIES\n0\nLINE\n10\n0\n")
+        status, body = self.curl("/v1/jobs", "--data-binary", f"@{cut}")
+        self.assertEqual(status, 400, body)
+        self.assertIn("LINE of line 5", json.loads(body)["detail"])
+
     def test_chunked(self):
         self.accepted("/v1/jobs", "-T", str(self.model), "-X", "POST",
                       "-H", "Transfer-Encoding: chunked", "-H", "Content-Type: application/octet-stream")

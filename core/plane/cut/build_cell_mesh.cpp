@@ -166,11 +166,27 @@ class CellMeshBuilder {
       }
     }
     out_.boundary_markers.push_back(marker);
+    if (!pslg_.bulges.empty()) out_.boundary_bulges.push_back(bulge(tri, j, parent));
     for (const std::int32_t n : {a, b}) {
       // Of several markers at a node the smallest but 0 is its own.
       std::int32_t& at = out_.node_markers[static_cast<std::size_t>(n)];
       if (marker != 0 && (at == 0 || marker < at)) at = marker;
     }
+  }
+
+  // Of edge j of a triangle if it is the whole of a chord.
+  [[nodiscard]] double bulge(const Triangle& tri, std::uint32_t j, std::size_t parent) const {
+    const SymmetricSegment& chord = pslg_.segments[parent];
+    const auto runs_from = [&](std::uint32_t from, std::uint32_t to) {
+      if (tri.v[from] != chord.a.orbit || tri.v[to] != chord.b.orbit) return false;
+      const auto centre = mesh_.centre();
+      if (chord.a.orbit == centre || chord.b.orbit == centre) return true;
+      const RotationTable& r = mesh_.rotations();
+      return r.subtract(tri.k[to], tri.k[from]) == r.subtract(chord.b.exponent, chord.a.exponent);
+    };
+    if (runs_from(next3(j), prev3(j))) return pslg_.bulges[parent];
+    if (runs_from(prev3(j), next3(j))) return -pslg_.bulges[parent];
+    return 0;
   }
 
   void add_bounds() {

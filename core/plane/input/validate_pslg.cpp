@@ -255,10 +255,14 @@ Result<void> check_seed_conflicts(const Pslg& pslg, const PlanarMap& map) {
 
 }  // namespace
 
-Result<void> validate_pslg(const Pslg& pslg, ExecutionContext& context) {
+Result<void> check_entities(const Pslg& pslg) {
   SYMCELL_TRY(check_size(pslg));
   SYMCELL_TRY(check_points(pslg));
-  SYMCELL_TRY(check_segments(pslg));
+  return check_segments(pslg);
+}
+
+Result<void> validate_pslg(const Pslg& pslg, ExecutionContext& context) {
+  SYMCELL_TRY(check_entities(pslg));
   SYMCELL_TRY(check_extent(pslg));
   SYMCELL_TRY(context.check());
   SYMCELL_TRY(check_duplicates(pslg));

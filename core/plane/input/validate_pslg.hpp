@@ -19,4 +19,8 @@ namespace symcell::plane {
 // Cost: O((N + K) log N) for K bounding-box overlaps.
 [[nodiscard]] Result<void> validate_pslg(const Pslg& pslg, ExecutionContext& context);
 
+// The first of these checks, which look at every vertex, seed and segment for itself: size, finite
+// coordinates, range, segment indices, zero-length segments.
+[[nodiscard]] Result<void> check_entities(const Pslg& pslg);
+
 }  // namespace symcell::plane

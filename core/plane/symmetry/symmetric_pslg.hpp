@@ -34,6 +34,9 @@ struct SymmetricPslg {
   std::int32_t centre_orbit = -1;    // index in orbit_points, -1: the centre is no vertex
   std::vector<SymmetricSegment> segments;
   std::vector<std::int32_t> segment_markers;
+  // Per segment: that of the arc which it is a chord of, from a to b (core/geometry/arc.hpp); empty:
+  // there are no arcs.
+  std::vector<double> bulges;
   bool uniform_markers = true;  // one marker an orbit of segments
   // Seeds of all copies, relative to the centre, as in the input.
   std::vector<Point2> holes;

@@ -84,5 +84,13 @@ TEST(CellArchive, IndicesAreChecked) {
   EXPECT_EQ(read_cell_archive(archive(cell)).error().code, ErrorCode::kSyntax);
 }
 
+TEST(CellArchive, KeepsTheNamesOfMarkers) {
+  SymmetryCellMesh cell = test::square_cell();
+  cell.marker_names = {{1, "outer rim"}, {-7, ""}, {12, "K\xc3\xbchlung"}};
+  const auto back = read_cell_archive(archive(cell));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->marker_names, cell.marker_names);
+}
+
 }  // namespace
 }  // namespace symcell

@@ -157,5 +157,45 @@ TEST(PslgJson, IndicesBeyond32Bits) {
   EXPECT_TRUE(read_pslg_json(R"({"type":"pslg","vertices":[],"segments":[[0,-1]]})"));
 }
 
+TEST(PslgJson, SegmentsMayBeArcs) {
+  const auto model = read_pslg_json(R"({"type": "pslg", "segments": [[0, 1],
+    {"vertices": [1, 0], "marker": 4, "bulge": 1}, {"vertices": [0, 1], "center": [0, 1]},
+    {"vertices": [2, 2], "marker": 5, "center": [0, 0]}],
+    "vertices": [[-1, 0], [1, 0], [3, 0]]})");
+  ASSERT_TRUE(model) << model.error().message;
+  ASSERT_EQ(model->segments.size(), 5U);
+  EXPECT_EQ(model->segments[1], (PslgSegment{1, 0, 4}));
+  EXPECT_EQ(model->bulge(0), 0);
+  EXPECT_EQ(model->bulge(1), 1);
+  // A quarter below the centre, counter-clockwise.
+  EXPECT_NEAR(model->bulge(2), std::tan(std::acos(-1) / 8), 1e-15);
+  EXPECT_EQ(model->vertices[3], (Point2{-3, 0}));
+  EXPECT_EQ(model->segments[3], (PslgSegment{2, 3, 5}));
+  EXPECT_EQ(model->segments[4], (PslgSegment{3, 2, 5}));
+  EXPECT_EQ(model->bulge(4), 1);
+  const auto back = read_pslg_json(write_pslg_json(*model));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->segments, model->segments);
+  EXPECT_EQ(back->bulges, model->bulges);
+}
+
+TEST(PslgJson, ArcsThatAreNone) {
+  const auto refused = [](const std::string& segment) {
+    const auto model = read_pslg_json(
+        "{\"type\": \"pslg\", \"vertices\": [[0, 0], [1, 0], [0, 1]], "
+        "\"segments\": [[0, 1], " +
+        segment + "]}");
+    EXPECT_FALSE(model) << segment;
+    return model ? Error{} : model.error();
+  };
+  EXPECT_EQ(refused(R"({"vertices": [1, 2], "center": [1, 2]})").pointer, "/segments/1/center");
+  EXPECT_EQ(refused(R"({"bulge": 1})").code, ErrorCode::kMissingField);
+  EXPECT_EQ(refused(R"({"vertices": [0], "bulge": 1})").code, ErrorCode::kWrongType);
+  EXPECT_EQ(refused(R"({"vertices": [1, 2], "bulge": 1, "center": [0, 0]})").code,
+            ErrorCode::kWrongType);
+  EXPECT_EQ(refused(R"({"vertices": [1, 2], "bulge": NaN})").code, ErrorCode::kNonFinite);
+  EXPECT_EQ(refused(R"({"vertices": [1, 2], "radius": 1})").code, ErrorCode::kWrongType);
+}
+
 }  // namespace
 }  // namespace symcell

@@ -247,7 +247,26 @@ TEST(Options, SettingsTellEveryNameAndReadBack) {
   EXPECT_EQ(options_to_json(*back, kPlanar), json);
 }
 
-TEST(Options, RepairIsForSurfaces) {
+TEST(Options, ArcsAndSectorsArePlanar) {
+  const auto sector = from_text("sector", "8");
+  ASSERT_TRUE(sector);
+  EXPECT_EQ(sector->sector, 8);
+  const auto chords = from_text("chord_error", "0.01");
+  ASSERT_TRUE(chords);
+  EXPECT_EQ(chords->chord_error_rel, 0.01);
+  for (const auto& options : {*sector, *chords}) {
+    EXPECT_TRUE(options_for(kPlanar, options));
+    EXPECT_EQ(code_of(options_for(ModelKind::kSurface, options)), ErrorCode::kBadOption);
+  }
+  for (const char* bad : {"1", "0", "2.5", "30001", "x"}) {
+    EXPECT_EQ(code_of(from_text("sector", bad)), ErrorCode::kBadFold) << bad;
+  }
+  for (const char* bad : {"0", "0.2", "-1", "nan"}) {
+    EXPECT_EQ(code_of(from_text("chord_error", bad)), ErrorCode::kBadOption) << bad;
+  }
+}
+
+TEST(Options, RepairIsNotForPlcs) {
   const auto wrap = from_text("repair", "wrap");
   ASSERT_TRUE(wrap);
   EXPECT_EQ(wrap->repair, Repair::kWrap);
@@ -255,6 +274,10 @@ TEST(Options, RepairIsForSurfaces) {
   for (const ModelKind kind : {ModelKind::kPlc, kPlanar}) {
     EXPECT_EQ(code_of(options_for(kind, *wrap)), ErrorCode::kBadOption);
   }
+  const auto all = from_text("repair", "all");
+  ASSERT_TRUE(all);
+  EXPECT_TRUE(options_for(kPlanar, *all));
+  EXPECT_EQ(code_of(options_for(ModelKind::kPlc, *all)), ErrorCode::kBadOption);
   EXPECT_EQ(code_of(from_text("repair", "some")), ErrorCode::kBadOption);
   EXPECT_EQ(options_to_json(*wrap, ModelKind::kSurface)["repair"], "wrap");
   EXPECT_TRUE(options_to_json({}, ModelKind::kPlc)["repair"].is_null());
