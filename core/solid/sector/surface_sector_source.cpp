@@ -189,6 +189,7 @@ SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean, Symmetry symmetry, 
     : symmetry_(std::move(symmetry)),
       repairs_(std::move(clean.repairs)),
       tolerance_(tolerance),
+      allowed_(tolerance - clean.joined),
       volume_(clean.volume),
       area_(clean.area),
       full_(std::move(clean.surface)) {
@@ -337,7 +338,7 @@ Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
   for (std::int32_t k = 0; k < symmetry_.fold; ++k) {
     SYMCELL_TRY(context.check());
     for (const Point3& p : samples) {
-      if (!tree_.within(rotations.rotate(p, k), tolerance_, last)) return failure;
+      if (!tree_.within(rotations.rotate(p, k), allowed_, last)) return failure;
     }
     const auto first = static_cast<std::int32_t>(all.points.size());
     for (const Point3& p : sector.points) all.points.push_back(rotations.rotate(p, k));
@@ -349,7 +350,7 @@ Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
   const TriangleTree copies(all.points, all.triangles);
   last = -1;
   const bool near = std::all_of(samples_.begin(), samples_.end(), [&](const Point3& p) {
-    return copies.within(p, tolerance_, last);
+    return copies.within(p, allowed_, last);
   });
   return near ? Result<void>{} : failure;
 }
@@ -363,10 +364,10 @@ Result<void> SurfaceSectorSource::check_boundary(std::span<const Point3> points,
     SYMCELL_TRY(context.check());
     for (const Point3& p : points) {
       const Point3 copy = rotations.rotate(p, k);
-      if (tree_.within(copy, tolerance_, last)) continue;
+      if (tree_.within(copy, allowed_, last)) continue;
       return fail(ErrorCode::kInternal,
                   "the mesh's boundary is farther from the surface than the tolerance of " +
-                      describe_rounded(tolerance_) + " at " +
+                      describe_rounded(allowed_) + " at " +
                       describe_point(symmetry_.frame.to_model(copy)));
     }
   }

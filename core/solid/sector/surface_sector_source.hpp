@@ -73,6 +73,7 @@ class SurfaceSectorSource final : public SectorSource {
   Symmetry symmetry_;
   std::vector<std::string> repairs_;
   double tolerance_;
+  double allowed_;  // what is left of it after edges were collapsed: of the mesh from what is here
   double noise_;                 // of coordinates
   double volume_;                // of the input
   double area_;                  // likewise

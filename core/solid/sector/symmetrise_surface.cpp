@@ -16,7 +16,7 @@ Result<std::unique_ptr<SectorSource>> symmetrise_surface(const TriangleSurface& 
   if (clean->problem) return fail(*clean->problem);
   auto symmetry = detect_surface_symmetry(*clean, options, context);
   if (!symmetry) return error_of(symmetry);
-  const double tolerance = tolerance_rel * clean->diameter - clean->joined;
+  const double tolerance = tolerance_rel * clean->diameter;
   return std::make_unique<SurfaceSectorSource>(std::move(*clean), symmetry->symmetry, tolerance);
 }
 
