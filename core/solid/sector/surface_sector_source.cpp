@@ -349,9 +349,8 @@ Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
   SYMCELL_TRY(context.check());
   const TriangleTree copies(all.points, all.triangles);
   last = -1;
-  const bool near = std::all_of(samples_.begin(), samples_.end(), [&](const Point3& p) {
-    return copies.within(p, allowed_, last);
-  });
+  const bool near = std::all_of(samples_.begin(), samples_.end(),
+                                [&](const Point3& p) { return copies.within(p, allowed_, last); });
   return near ? Result<void>{} : failure;
 }
 

@@ -74,9 +74,9 @@ class SurfaceSectorSource final : public SectorSource {
   std::vector<std::string> repairs_;
   double tolerance_;
   double allowed_;  // what is left of it after edges were collapsed: of the mesh from what is here
-  double noise_;                 // of coordinates
-  double volume_;                // of the input
-  double area_;                  // likewise
+  double noise_;    // of coordinates
+  double volume_;   // of the input
+  double area_;     // likewise
   IndexedSurface full_;          // local frame
   BoundaryTopology topology_;    // of full_
   TriangleTree tree_;            // of full_
