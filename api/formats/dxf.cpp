@@ -75,6 +75,13 @@ std::string lower(std::string_view text) {
   return result;
 }
 
+struct Polyline {
+  bool closed = false;
+  Placement own;
+  Item item;
+  std::vector<DL_VertexData> vertices;
+};
+
 // Takes what dxflib calls out as items of blocks; the drawing itself is the block "".
 class Collector final : public DL_CreationAdapter {
  public:
@@ -216,13 +223,6 @@ class Collector final : public DL_CreationAdapter {
     insertion.row = own.direction(i.rowSp * y);
     add(std::move(insertion));
   }
-
-  struct Polyline {
-    bool closed = false;
-    Placement own;
-    Item item;
-    std::vector<DL_VertexData> vertices;
-  };
 
   Block ignored_;
   Block* block_ = &blocks[""];

@@ -111,7 +111,7 @@ class Scanner {
     return type_ + (type_.empty() ? "" : " of line " + std::to_string(line_));
   }
 
-  Failure truncated() const {
+  [[nodiscard]] Failure truncated() const {
     const std::string where = type_.empty() ? section_.empty() ? "" : " in " + printable(section_)
                                             : " within the " + entity();
     return complain(ErrorCode::kTruncated, number_,

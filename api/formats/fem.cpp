@@ -155,7 +155,7 @@ class FemReader {
 
   [[nodiscard]] double value(std::size_t i) const { return i < count_ ? numbers_[i] : 0; }
 
-  Result<std::int32_t> whole(std::size_t i) const {
+  [[nodiscard]] Result<std::int32_t> whole(std::size_t i) const {
     const auto number = whole_int32(value(i));
     if (number) return *number;
     return complain(ErrorCode::kSyntax,

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "api/schema/options.hpp"
 
@@ -100,7 +101,8 @@ Result<MeshOptions> options_for_solid(ModelKind kind, MeshOptions options) {
 }  // namespace
 
 Result<MeshOptions> options_for(ModelKind kind, MeshOptions options) {
-  return is_planar(kind) ? options_for_planar(options) : options_for_solid(kind, options);
+  return is_planar(kind) ? options_for_planar(std::move(options))
+                         : options_for_solid(kind, std::move(options));
 }
 
 }  // namespace symcell

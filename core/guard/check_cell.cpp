@@ -63,7 +63,7 @@ class CellChecker {
     return &cell_.elements[e * corners_];
   }
 
-  Result<void> check_fields() const {
+  [[nodiscard]] Result<void> check_fields() const {
     const auto d = static_cast<std::size_t>(dimension_);
     const std::size_t facets = cell_.facet_count(), elements = cell_.element_count();
     const auto by_sector = [&](std::size_t size, std::size_t count) {
@@ -139,7 +139,7 @@ class CellChecker {
 
   // In all sectors, and as written: by more than the rounding of a node's rotation and move into
   // the model's frame may change.
-  Result<void> check_orientation() const {
+  [[nodiscard]] Result<void> check_orientation() const {
     const RotationTable rotations(cell_.fold);
     double largest = std::max({std::abs(cell_.axis_origin.x), std::abs(cell_.axis_origin.y),
                                std::abs(cell_.axis_origin.z)});

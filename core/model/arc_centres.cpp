@@ -22,6 +22,7 @@ std::size_t at(std::int32_t i) {
 
 std::vector<Point3> raised(const std::vector<Point2>& points) {
   std::vector<Point3> result;
+  result.reserve(points.size());
   for (const Point2 p : points) result.push_back({p.x, p.y, 0});
   return result;
 }

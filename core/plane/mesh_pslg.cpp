@@ -226,7 +226,7 @@ Result<Refined> refine(const Pslg& model,
   auto work = refine_from_starts(*start, criteria, options, *sizes, symmetric.centre, context);
   if (!work) return error_of(work);
   stats.timings_ms.refine += watch.lap();
-  return Refined{std::move(*start), std::move(wanted), std::move(criteria), std::move(*work)};
+  return Refined{std::move(*start), std::move(wanted), std::move(criteria), *work};
 }
 
 // Vertices that refinement sets on chords belong on the arcs: they become vertices of the model

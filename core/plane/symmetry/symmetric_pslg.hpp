@@ -29,29 +29,29 @@ struct SymmetricSegment {
 
 struct SymmetricPslg {
   std::int32_t fold = 1;
+  std::int32_t centre_orbit = -1;    // index in orbit_points, -1: the centre is no vertex
   Point2 centre;                     // input coordinates
   std::vector<Point2> orbit_points;  // relative to the centre
-  std::int32_t centre_orbit = -1;    // index in orbit_points, -1: the centre is no vertex
   std::vector<SymmetricSegment> segments;
   std::vector<std::int32_t> segment_markers;
   // Per segment: that of the arc which it is a chord of, from a to b (core/geometry/arc.hpp); empty:
   // there are no arcs.
   std::vector<double> bulges;
   bool uniform_markers = true;  // one marker an orbit of segments
+  bool ignore_markers = false;  // regions may differ between copies
   // Seeds of all copies, relative to the centre, as in the input.
   std::vector<Point2> holes;
   std::vector<PslgRegion> regions;
-  bool ignore_markers = false;  // regions may differ between copies
 
   // What was found, for statistics and `inspect`.
   double symmetry_error_rel = 0;  // largest move of a vertex / diameter
   double diameter = 0;            // of the input, bounding-box diagonal
-  bool fold_detected = false;
-  std::int32_t geometry_fold = 1;  // likewise with markers and region attributes set aside
-  bool centre_detected = false;
   // Not 0 where vertices of the input need not be vertices here, or are moved by more than the usual
   // tolerance: the share of the diameter to which its segments keep their places.
   double shape_tolerance_rel = 0;
+  std::int32_t geometry_fold = 1;  // the fold with markers and region attributes set aside
+  bool fold_detected = false;
+  bool centre_detected = false;
   std::vector<Warning> warnings;  // of the choice of fold
 
   [[nodiscard]] std::int32_t segment_marker(std::size_t segment, std::int32_t copy) const {
