@@ -173,20 +173,27 @@ Result<MeshOutcome> run(const Symmetrise& symmetrise,
   return outcome;
 }
 
-Result<MeshOutcome> mesh_planar(const Pslg& given,
-                                const MeshOptions& options,
-                                ExecutionContext& context) {
+// `use` of the model as a whole and the options for it.
+template <class Use>
+auto with_whole_model(const Pslg& given,
+                      const MeshOptions& options,
+                      ExecutionContext& context,
+                      const Use& use) -> decltype(use(given, options)) {
   const auto input = plane::prepare_input(given, options, context);
   if (!input) return error_of(input);
-  const Pslg& pslg = *input ? (*input)->pslg : given;
-  const MeshOptions& own = *input ? (*input)->options : options;
+  return *input ? use((*input)->pslg, (*input)->options) : use(given, options);
+}
+
+Result<MeshOutcome> mesh_planar(const Pslg& pslg,
+                                const MeshOptions& options,
+                                ExecutionContext& context) {
   const auto symmetrise = [&] {
-    auto symmetric = symmetrise_pslg(pslg, own, context);
+    auto symmetric = symmetrise_pslg(pslg, options, context);
     if (symmetric) add_warnings(pslg.notes, symmetric->warnings);
     return symmetric;
   };
   const auto mesh = [&](const plane::SymmetricPslg& symmetric) {
-    return plane::mesh_pslg(pslg, symmetric, own, context);
+    return plane::mesh_pslg(pslg, symmetric, options, context);
   };
   auto outcome = run(symmetrise, mesh, options.strict, context);
   if (!outcome) return outcome;
@@ -195,21 +202,17 @@ Result<MeshOutcome> mesh_planar(const Pslg& given,
   return outcome;
 }
 
-Result<PslgInspection> inspect_planar(const Pslg& given,
+Result<PslgInspection> inspect_planar(const Pslg& pslg,
                                       const MeshOptions& options,
                                       ExecutionContext& context) {
-  const auto input = plane::prepare_input(given, options, context);
-  if (!input) return error_of(input);
-  const Pslg& pslg = *input ? (*input)->pslg : given;
-  const MeshOptions& own = *input ? (*input)->options : options;
   Result<PslgInspection> found;
   if (pslg.has_arcs()) {
-    const auto chorded = plane::discretise_arcs(pslg, own, context);
+    const auto chorded = plane::discretise_arcs(pslg, options, context);
     if (!chorded) return error_of(chorded);
-    found = plane::inspect_pslg(chorded->pslg, own, context);
+    found = plane::inspect_pslg(chorded->pslg, options, context);
   } else {
     SYMCELL_TRY(plane::validate_pslg(pslg, context));
-    found = plane::inspect_pslg(pslg, own, context);
+    found = plane::inspect_pslg(pslg, options, context);
   }
   if (found) add_warnings(pslg.notes, found->warnings);
   return found;
@@ -227,7 +230,12 @@ Result<Inspection> checked(Result<Found> found, bool strict) {
 Result<MeshOutcome> mesh_model(const Model& model,
                                const MeshOptions& options,
                                ExecutionContext& context) {
-  if (const auto* pslg = std::get_if<Pslg>(&model)) return mesh_planar(*pslg, options, context);
+  if (const auto* pslg = std::get_if<Pslg>(&model)) {
+    return with_whole_model(*pslg, options, context,
+                            [&](const Pslg& whole, const MeshOptions& own) {
+                              return mesh_planar(whole, own, context);
+                            });
+  }
   const auto mesh = [&](SymmetricSolid& solid) {
     return mesh_at_some_fold(solid, options, context);
   };
@@ -246,7 +254,11 @@ Result<Inspection> inspect_model(const Model& model,
                                  const MeshOptions& options,
                                  ExecutionContext& context) {
   if (const auto* pslg = std::get_if<Pslg>(&model)) {
-    return checked(inspect_planar(*pslg, options, context), options.strict);
+    return checked(with_whole_model(*pslg, options, context,
+                                    [&](const Pslg& whole, const MeshOptions& own) {
+                                      return inspect_planar(whole, own, context);
+                                    }),
+                   options.strict);
   }
   if (const auto* plc = std::get_if<Plc>(&model)) {
     return checked(solid::inspect_plc(*plc, options, context), options.strict);

@@ -17,7 +17,6 @@ class CurveDrawing {
  public:
   // Curves of no length, and those that go between the same ends in the same way as another of the
   // same marker, are dropped.  `bulge`: core/geometry/arc.hpp.
-  void add_line(Point2 a, Point2 b, std::int32_t marker) { add_arc(a, b, 0, marker); }
   void add_arc(Point2 a, Point2 b, double bulge, std::int32_t marker);
   // centre + cos t * u + sin t * v for t from `from` to `to`, in radians, a full turn at most.
   void add_ellipse(Point2 centre, Point2 u, Point2 v, double from, double to, std::int32_t marker);

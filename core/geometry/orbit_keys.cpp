@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/mix.hpp"
+
 namespace symcell {
 namespace {
 
@@ -21,14 +23,6 @@ FaceKey pack(const std::array<Named, 3>& c) {
 
 bool less(const FaceKey& a, const FaceKey& b) {
   return a.high != b.high ? a.high < b.high : a.low < b.low;
-}
-
-std::uint64_t mix(std::uint64_t x) {
-  x ^= x >> 31;
-  x *= 0x9e3779b97f4a7c15ULL;
-  x ^= x >> 29;
-  x *= 0xbf58476d1ce4e5b9ULL;
-  return x ^ (x >> 32);
 }
 
 std::uint64_t hash(const EdgeKey& key) {

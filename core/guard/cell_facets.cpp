@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 #include <tuple>
 #include <utility>
+
+#include "core/base/mix.hpp"
+#include "core/base/union_find.hpp"
 
 namespace symcell::internal {
 namespace {
@@ -16,14 +18,6 @@ std::size_t at(std::int32_t i) {
 // Facet i lies opposite corner i; its nodes run counter-clockwise seen from outside.
 constexpr std::int32_t kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 constexpr std::int32_t kSides[3][2] = {{1, 2}, {2, 0}, {0, 1}};
-
-std::uint64_t mix(std::uint64_t x) {
-  x ^= x >> 32;
-  x *= 0xd6e8feb86659fd93ULL;
-  x ^= x >> 29;
-  x *= 0x9e3779b97f4a7c15ULL;
-  return x ^ (x >> 32);
-}
 
 // Of a table with open places for so many different things: at most two thirds are taken.
 std::size_t table_size(std::size_t things) {
@@ -109,19 +103,16 @@ class LinkChecker {
   }
   [[nodiscard]] bool is_marked(std::int32_t n) const { return marked_[at(n)] != 0; }
 
+  [[nodiscard]] std::size_t root(std::size_t place) {
+    return at(joined_.root(static_cast<std::int32_t>(place)));
+  }
+  void join(std::size_t a, std::size_t b) {
+    joined_.join(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
+  }
+
   [[nodiscard]] std::size_t local(std::int32_t e, std::int32_t node) const {
     const std::int32_t* v = element(at(e));
     return static_cast<std::size_t>(std::find(v, v + corners_, node) - v);
-  }
-
-  [[nodiscard]] std::size_t root(std::size_t i) {
-    while (joined_[i] != i) i = joined_[i] = joined_[joined_[i]];
-    return i;
-  }
-  void join(std::size_t i, std::size_t j) {
-    i = root(i);
-    j = root(j);
-    joined_[std::max(i, j)] = static_cast<std::uint32_t>(std::min(i, j));
   }
 
   // Elements with a marked node, numbered; their places at marked nodes and at edges between two,
@@ -135,8 +126,7 @@ class LinkChecker {
         place_[e] = ++count;
       }
     }
-    joined_.resize((count + std::size_t{1}) * kPlaces);
-    std::iota(joined_.begin(), joined_.end(), std::uint32_t{0});
+    joined_ = UnionFind((count + std::size_t{1}) * kPlaces);
     const auto d = static_cast<std::size_t>(dimension_);
     for (const InnerFacet& f : inner_) {
       const auto [p, q] = f.elements;
@@ -162,8 +152,8 @@ class LinkChecker {
   const std::vector<char>& pinched_;
   std::int32_t dimension_;
   std::size_t corners_;
-  std::vector<std::uint32_t> place_;   // per element: its number, 0: without a marked node
-  std::vector<std::uint32_t> joined_;  // classes of places
+  std::vector<std::uint32_t> place_;  // per element: its number, 0: without a marked node
+  UnionFind joined_{0};               // of places
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/base/error.hpp"
+#include "core/model/pslg.hpp"
 
 namespace symcell::fuzz {
 
@@ -27,6 +28,17 @@ inline void require_good_message(const Error& error) {
   require(error.code != ErrorCode::kInternal, "no input is an internal error");
   require(!error.message.empty(), "an error has a message");
   for (const char c : error.message) require(c >= ' ' && c <= '~', "messages are printable ASCII");
+}
+
+// Of readers of drawings, which number their vertices themselves.
+inline void require_good_drawing(const Result<Pslg>& model) {
+  if (!model) return require_good_message(model.error());
+  require(model->bulges.empty() || model->bulges.size() == model->segments.size(),
+          "a bulge a segment");
+  const auto count = static_cast<std::int32_t>(model->vertices.size());
+  for (const PslgSegment& s : model->segments) {
+    require(s.a >= 0 && s.b >= 0 && s.a < count && s.b < count, "segments join vertices");
+  }
 }
 
 // Writes the model to the file that SYMCELL_FUZZ_MODEL names, to look at it with other programs.

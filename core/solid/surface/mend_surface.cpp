@@ -142,6 +142,14 @@ class ShortEdges {
 }  // namespace
 
 std::optional<IndexedSurface> collapse_short_edges(const IndexedSurface& surface, double most) {
+  const bool any =
+      std::any_of(surface.triangles.begin(), surface.triangles.end(), [&](const Triangle& t) {
+        const Point3 &a = surface.points[t[0]], &b = surface.points[t[1]],
+                     &c = surface.points[t[2]];
+        return std::min({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)}) <
+               most * most;
+      });
+  if (!any) return std::nullopt;
   return mended_by(surface, [&](Mesh& mesh) { return ShortEdges(mesh, most).collapse(); });
 }
 
