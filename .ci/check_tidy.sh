@@ -15,6 +15,7 @@ if ((${#changed[@]} > most)); then
   changed=("${changed[@]:0:most}")
 fi
 ((${#changed[@]})) || exit 0
-# g++'s warnings that clang does not know are no errors here.
+# g++'s warnings and parameters that clang does not know are no errors here.
 printf '%s\0' "${changed[@]}" | xargs -0 -n1 -P"$(nproc)" \
-  clang-tidy-14 -p build/release --quiet --extra-arg=-Wno-unknown-warning-option
+  clang-tidy-14 -p build/release --quiet --extra-arg=-Wno-unknown-warning-option \
+  --extra-arg=-Wno-unused-command-line-argument
