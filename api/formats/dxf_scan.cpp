@@ -17,8 +17,7 @@ constexpr std::size_t kLongestName = 255;  // as the format has it
 constexpr std::string_view kBinary = "AutoCAD Binary DXF";
 
 // Kinds of group values, by code.
-constexpr int kType = 0, kName = 2, kLayer = 8, kColour = 62, kInvisible = 60, kPaperSpace = 67,
-              kFlags = 70;
+constexpr int kType = 0, kName = 2, kColour = 62, kInvisible = 60, kPaperSpace = 67, kFlags = 70;
 bool is_real(int code) {
   return (code >= 10 && code <= 59) || (code >= 210 && code <= 239);
 }

@@ -22,6 +22,7 @@
 
 #include "server/cli/interrupt.hpp"
 #include "server/cli/progress_bar.hpp"
+#include "server/worker/heap.hpp"
 #include "server/worker/process_end.hpp"
 #include "server/worker/process_limits.hpp"
 
@@ -111,6 +112,8 @@ Result<std::string> result_of(const SupervisedWork& work, ExecutionContext& cont
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
   server::apply_limits({settings.memory_bytes, 0});
+  server::prepare_heap();
+  server::reserve_heap(settings.memory_bytes);
   const Result<std::string> result = result_of(work, context);
   std::fflush(nullptr);
   const std::string text = encode(result);

@@ -1,7 +1,6 @@
 #include "server/worker/worker_main.hpp"
 
 #include <fcntl.h>
-#include <malloc.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -19,6 +18,7 @@
 #include "api/formats/model_format.hpp"
 #include "core/base/execution_context.hpp"
 #include "server/base/files.hpp"
+#include "server/worker/heap.hpp"
 #include "server/worker/local_engine.hpp"
 #include "server/worker/process_limits.hpp"
 #include "server/worker/protocol.hpp"
@@ -39,6 +39,7 @@ WorkerMessage perform(Work& work) {
   const RequestMessage& request = work.request;
   try {
     apply_limits(request.limits);
+    reserve_heap(request.limits.memory_bytes);
     reset_peak_memory();
     work.context.set_time_limit(request.job.options.time_limit_s);
     work.context.set_max_elements(request.job.options.max_elements);
@@ -96,7 +97,7 @@ class Worker {
       }
       WorkerMessage outcome = perform(*work);
       // What the mesher freed is the machine's again: an idle worker is to cost little.
-      ::malloc_trim(0);
+      release_heap();
       {
         const std::lock_guard lock(mutex_);
         outcome_ = std::move(outcome);
@@ -182,6 +183,7 @@ class Worker {
 
 int run_worker(int socket, pid_t parent) {
   prepare_worker_process();
+  prepare_heap();
   die_with_parent(parent);
   // The mesher may start processes of its own; the connection is not theirs.
   ::fcntl(socket, F_SETFD, FD_CLOEXEC);

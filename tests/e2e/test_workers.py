@@ -42,6 +42,10 @@ def cpu_ticks(pid):
     return int(fields[11]) + int(fields[12])
 
 
+def limits_of(pid):
+    return pathlib.Path(f"/proc/{pid}/limits").read_text()
+
+
 class WorkersTest(unittest.TestCase):
     def start(self, **flags):
         self.server = Server(workers=1, **flags)
@@ -196,8 +200,8 @@ class WorkersTest(unittest.TestCase):
         self.start()
         self.running(long_options())
         # A spare worker may be starting still: it limits itself once it runs.
-        until(lambda: all(re.search(r"Max core file size\s+1\s+1\s", self.limits_of(pid)) for pid in self.workers()),
-              "no worker writes a core file", 20)
+        no_core = re.compile(r"Max core file size\s+1\s+1\s")
+        until(lambda: all(no_core.search(limits_of(pid)) for pid in self.workers()), "no worker writes a core file")
         for pid in self.workers():
             targets = {name: os.readlink(f"/proc/{pid}/fd/{name}") for name in os.listdir(f"/proc/{pid}/fd")}
             self.assertEqual(len([t for t in targets.values() if t.startswith("socket:")]), 1, targets)
