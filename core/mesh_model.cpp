@@ -173,6 +173,16 @@ Result<MeshOutcome> run(const Symmetrise& symmetrise,
   return outcome;
 }
 
+// What is asked of all sectors together where the model is one of them: its axis and its fold.
+MeshOptions of_all_sectors(const MeshOptions& options) {
+  if (!options.sector) return options;
+  MeshOptions all = options;
+  all.axis_origin = options.axis_origin.value_or(Point3{0, 0, 0});
+  all.axis_direction = options.axis_direction.value_or(Point3{0, 0, 1});
+  if (!options.fold && !options.largest_fold) all.fold = options.sector;
+  return all;
+}
+
 // `use` of the model as a whole and the options for it.
 template <class Use>
 auto with_whole_model(const Pslg& given,
@@ -236,18 +246,16 @@ Result<MeshOutcome> mesh_model(const Model& model,
                               return mesh_planar(whole, own, context);
                             });
   }
-  const auto mesh = [&](SymmetricSolid& solid) {
-    return mesh_at_some_fold(solid, options, context);
-  };
+  const MeshOptions own = of_all_sectors(options);
+  const auto mesh = [&](SymmetricSolid& solid) { return mesh_at_some_fold(solid, own, context); };
   if (const auto* plc = std::get_if<Plc>(&model)) {
     const auto symmetrise = [&] { return solid::symmetrise_plc(*plc, options, context); };
     return run([&] { return at_its_fold(symmetrise(), options, context); }, mesh, options.strict,
                context);
   }
   const auto& surface = std::get<TriangleSurface>(model);
-  const auto symmetrise = [&] { return solid::symmetrise_surface(surface, options, context); };
-  return run([&] { return at_its_fold(symmetrise(), options, context); }, mesh, options.strict,
-             context);
+  const auto symmetrise = [&] { return solid::symmetrise_surface(surface, own, context); };
+  return run([&] { return at_its_fold(symmetrise(), own, context); }, mesh, own.strict, context);
 }
 
 Result<Inspection> inspect_model(const Model& model,
@@ -263,8 +271,9 @@ Result<Inspection> inspect_model(const Model& model,
   if (const auto* plc = std::get_if<Plc>(&model)) {
     return checked(solid::inspect_plc(*plc, options, context), options.strict);
   }
-  return checked(solid::inspect_surface(std::get<TriangleSurface>(model), options, context),
-                 options.strict);
+  return checked(
+      solid::inspect_surface(std::get<TriangleSurface>(model), of_all_sectors(options), context),
+      options.strict);
 }
 
 }  // namespace symcell

@@ -319,45 +319,78 @@ Result<void> set_repair(const OptionInfo& info, const OptionValue& value, MeshOp
   return refuse(ErrorCode::kBadOption, info, value, "none, safe, all or wrap");
 }
 
-// "marker:3=0.5,vertex:17=0.02".
-std::optional<std::vector<SizeRequest>> as_sizes(const std::string& text) {
-  std::vector<SizeRequest> sizes;
-  std::string_view rest = text;
+// Of a list "marker:3=0.5,vertex:17=0.02".
+struct Assignment {
+  bool at_vertex = false;  // else of a marker
+  std::int64_t id = 0;
+  double value = 0;
+};
+
+std::optional<std::vector<Assignment>> as_assignments(const OptionValue& value) {
+  if (value.kind != Kind::kText) return std::nullopt;
+  std::vector<Assignment> all;
+  std::string_view rest = value.text;
   const auto taken = [&](std::string_view word) {
     if (!rest.starts_with(word)) return false;
     rest.remove_prefix(word.size());
     return true;
   };
-  const auto number = [&](auto& value) {
-    const auto [stop, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+  const auto number = [&](auto& into) {
+    const auto [stop, error] = std::from_chars(rest.data(), rest.data() + rest.size(), into);
     if (error != std::errc{}) return false;
     rest.remove_prefix(static_cast<std::size_t>(stop - rest.data()));
     return true;
   };
   do {
     while (taken(" ")) continue;
-    SizeRequest request;
-    if (taken("vertex")) {
-      request.kind = SizeRequest::Kind::kVertex;
-    } else if (!taken("marker")) {
-      return std::nullopt;
-    }
-    const bool read = (taken(":") || taken(" ")) && number(request.id) && taken("=") &&
-                      number(request.size) && request.size > 0 && std::isfinite(request.size);
+    Assignment next;
+    next.at_vertex = taken("vertex");
+    if (!next.at_vertex && !taken("marker")) return std::nullopt;
+    const bool read = (taken(":") || taken(" ")) && number(next.id) && taken("=") &&
+                      number(next.value) && next.value > 0 && std::isfinite(next.value);
     if (!read) return std::nullopt;
-    sizes.push_back(request);
+    all.push_back(next);
   } while (taken(","));
   if (!rest.empty()) return std::nullopt;
-  return sizes;
+  return all;
 }
 
 Result<void> set_sizes(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
-  const auto sizes = value.kind == Kind::kText ? as_sizes(value.text) : std::nullopt;
-  if (!sizes) {
+  const auto given = as_assignments(value);
+  if (!given) {
     return refuse(ErrorCode::kBadOption, info, value,
                   "largest edge lengths of markers and vertices, as marker:3=0.5,vertex:17=0.02");
   }
-  options.sizes = *sizes;
+  options.sizes.clear();
+  for (const Assignment& a : *given) {
+    const auto kind = a.at_vertex ? SizeRequest::Kind::kVertex : SizeRequest::Kind::kMarker;
+    options.sizes.push_back({kind, a.id, a.value});
+  }
+  return {};
+}
+
+Result<void> set_divisions(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
+  const auto given = as_assignments(value);
+  const auto is_division = [](const Assignment& a) {
+    return !a.at_vertex && a.value == std::floor(a.value) && a.value <= kMostDivisions;
+  };
+  if (!given || !std::all_of(given->begin(), given->end(), is_division)) {
+    return refuse(ErrorCode::kBadOption, info, value,
+                  "whole numbers of parts, 1 to 1000000, for markers, as marker:3=8,marker:4=12");
+  }
+  options.divisions.clear();
+  for (const Assignment& a : *given) {
+    options.divisions.push_back({a.id, static_cast<std::int32_t>(a.value)});
+  }
+  return {};
+}
+
+Result<void> set_gradation(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
+  const auto factor = as_number(value);
+  if (!factor || !(*factor >= kLeastGradation)) {
+    return refuse(ErrorCode::kBadOption, info, value, "a number of at least 1.05");
+  }
+  options.gradation = *factor;
   return {};
 }
 
@@ -399,6 +432,16 @@ Json get_sizes(const MeshOptions& o, ModelKind) {
     if (!text.empty()) text += ',';
     text += s.kind == SizeRequest::Kind::kVertex ? "vertex:" : "marker:";
     text += std::to_string(s.id) + '=' + Json(s.size).dump();
+  }
+  return text;
+}
+
+Json get_divisions(const MeshOptions& o, ModelKind) {
+  if (o.divisions.empty()) return nullptr;
+  std::string text;
+  for (const DivisionRequest& d : o.divisions) {
+    if (!text.empty()) text += ',';
+    text += "marker:" + std::to_string(d.marker) + '=' + std::to_string(d.parts);
   }
   return text;
 }
@@ -462,8 +505,10 @@ constexpr auto kRows = std::to_array<OptionRow>({
      set_symmetry_tolerance,
      get_symmetry_tolerance},
     {{"sector", "N", "",
-      "planar: the model is one of N equal sectors about center, or 0,0; its copies are made",
-      kPlanar},
+      "planar, STL, OFF, PLY, OBJ: the model is one of N equal sectors about center, or 0,0, or "
+      "the "
+      "axis, or z; its copies are made",
+      kAll},
      set_sector,
      [](const MeshOptions& o, ModelKind) { return o.sector ? Json(*o.sector) : Json(nullptr); }},
     {{"repair", "none|safe|all|wrap", "safe",
@@ -493,9 +538,8 @@ constexpr auto kRows = std::to_array<OptionRow>({
          kSolids}),
     bound_row<&MeshOptions::max_edge>({"max_edge", "L", "", "longest edge, in model units", kAll}),
     {{"min_edge", "L", "",
-      "planar: refinement makes no edge shorter than this, in model units; what would need one is "
-      "exempt",
-      kPlanar},
+      "refinement makes no edge shorter than this, in model units; what would need one is exempt",
+      kAll},
      set_min_edge,
      [](const MeshOptions& o, ModelKind) {
        return o.min_edge > 0 ? Json(o.min_edge) : Json(nullptr);
@@ -505,6 +549,17 @@ constexpr auto kRows = std::to_array<OptionRow>({
       kPlanar},
      set_sizes,
      get_sizes},
+    {{"gradation", "G", "",
+      "planar: edges grow away from small ones by at most this factor from one to the next, 1.05 "
+      "or "
+      "more",
+      kPlanar},
+     set_gradation,
+     [](const MeshOptions& o, ModelKind) { return bound_to_json(o.gradation); }},
+    {{"divisions", "marker:M=N", "",
+      "planar: segments of a marker have N equal parts and no other points", kPlanar},
+     set_divisions,
+     get_divisions},
     flag_row<&MeshOptions::keep_boundary>(
         {"keep_boundary", "", "", "planar: no new points on what bounds the domain", kPlanar}),
     {{"chord_error", "E", "1e-3",

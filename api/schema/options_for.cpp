@@ -13,7 +13,8 @@ Failure not_of_kind(ModelKind kind, const std::string& name) {
   const std::string message =
       is_planar(kind)
           ? " is for solid models; planar models take min_angle, max_area, max_edge and min_edge"
-          : " is for planar models; solids take radius_edge, min_dihedral, max_volume and max_edge";
+          : " is for planar models; solids take radius_edge, min_dihedral, max_volume, "
+            "max_edge and min_edge";
   return fail(ErrorCode::kBadOption, name + message, {}, "/options/" + name);
 }
 
@@ -90,11 +91,19 @@ Result<MeshOptions> options_for_solid(ModelKind kind, MeshOptions options) {
   }
   if (options.min_angle_deg != standard.min_angle_deg) return not_of_kind(kind, "min_angle");
   if (std::isfinite(options.max_area)) return not_of_kind(kind, "max_area");
-  if (options.min_edge > 0) return not_of_kind(kind, "min_edge");
   if (!options.sizes.empty()) return not_of_kind(kind, "sizes");
+  if (std::isfinite(options.gradation)) return not_of_kind(kind, "gradation");
+  if (!options.divisions.empty()) return not_of_kind(kind, "divisions");
   if (options.keep_boundary) return not_of_kind(kind, "keep_boundary");
-  if (options.sector) return not_of_kind(kind, "sector");
+  if (options.sector && kind == ModelKind::kPlc) {
+    return fail(
+        ErrorCode::kBadOption,
+        "sector is for planar models and tessellated surfaces; give the sector's surface as "
+        "STL, OFF, PLY or OBJ",
+        {}, "/options/sector");
+  }
   if (options.chord_error_rel != standard.chord_error_rel) return not_of_kind(kind, "chord_error");
+  SYMCELL_TRY(check_edge_lengths(options));
   return options;
 }
 

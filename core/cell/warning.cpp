@@ -42,6 +42,7 @@ std::string_view warning_code_name(WarningCode code) {
     case WarningCode::kLoopsJoined: return "loops_joined";
     case WarningCode::kEntitiesLeftOut: return "entities_left_out";
     case WarningCode::kModelRepaired: return "model_repaired";
+    case WarningCode::kVerticesCopied: return "vertices_copied";
     case WarningCode::kArcsAsChords: return "arcs_as_chords";
     case WarningCode::kExemptElements: return "exempt_elements";
   }
@@ -133,6 +134,15 @@ Warning entities_left_out_warning(const std::vector<std::string>& left_out) {
 Warning model_repaired_warning(const std::vector<std::string>& repairs) {
   return {WarningCode::kModelRepaired, "the model was repaired: " + listed(repairs, "; "),
           "look at the places named, and mend the model where that is not what it should be"};
+}
+
+Warning vertices_copied_warning(std::int32_t fold, std::size_t copies) {
+  return {
+      WarningCode::kVerticesCopied,
+      "no outline of one sector fits the others within the tolerance, so that each sector got the "
+      "vertices of all " +
+          std::to_string(fold) + ": " + std::to_string(copies) + " more than the model has",
+      "correct the model, raise symmetry_tolerance, or give a smaller fold"};
 }
 
 Warning arcs_as_chords_warning(std::size_t vertices, std::size_t sides) {

@@ -26,6 +26,7 @@ enum class WarningCode : std::uint8_t {
   kLoopsJoined,           // ends that stood beside each other were joined
   kEntitiesLeftOut,       // a drawing holds what is no part of a model
   kModelRepaired,         // a planar model was mended on request
+  kVerticesCopied,        // all sectors of a planar model got the vertices of all
   kArcsAsChords,          // vertices or sides of the mesh lie beside the arcs they belong to
   kExemptElements,        // many elements break a bound that the input forces them to
 };
@@ -73,6 +74,8 @@ struct Warning {
 // Requires: the lists are not empty.
 [[nodiscard]] Warning entities_left_out_warning(const std::vector<std::string>& left_out);
 [[nodiscard]] Warning model_repaired_warning(const std::vector<std::string>& repairs);
+// `copies`: vertices of the whole model that it does not have.
+[[nodiscard]] Warning vertices_copied_warning(std::int32_t fold, std::size_t copies);
 // Per cell: `vertices` on chords, `sides` without a middle on their arc; not both 0.
 [[nodiscard]] Warning arcs_as_chords_warning(std::size_t vertices, std::size_t sides);
 // Where more than 0.5 % of a cell's `elements` are exempt.

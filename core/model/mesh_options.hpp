@@ -18,6 +18,11 @@ inline constexpr std::int32_t kMaxFold = 30'000;
 // Chords of 52 degrees: coarser ones are no longer a picture of an arc.
 inline constexpr double kMaxChordErrorRel = 0.1;
 
+// Edges that grow by less than this factor leave hardly any freedom to a mesh of triangles.
+inline constexpr double kLeastGradation = 1.05;
+// More parts of one segment than that are a mistake.
+inline constexpr std::int32_t kMostDivisions = 1'000'000;
+
 inline constexpr double kExactSymmetryToleranceRel = 1e-6;    // PSLG and PLC
 inline constexpr double kSurfaceSymmetryToleranceRel = 1e-3;  // tessellated surfaces
 
@@ -36,6 +41,13 @@ struct SizeRequest {
   std::int64_t id = 0;  // a marker: of edges on its segments; a vertex: of edges at it, from 0
   double size = 0;      // input units
   friend bool operator==(const SizeRequest&, const SizeRequest&) = default;
+};
+
+// Equal parts of the segments of a marker, on which refinement puts no more points.
+struct DivisionRequest {
+  std::int64_t marker = 0;
+  std::int32_t parts = 1;
+  friend bool operator==(const DivisionRequest&, const DivisionRequest&) = default;
 };
 
 // Values are what a user writes in `options`; infinities mean "no bound".
@@ -60,7 +72,9 @@ struct MeshOptions {
   double max_edge = kInfinity;     // input units
   double min_edge = 0;             // input units; of edges that refinement makes
   std::vector<SizeRequest> sizes;  // planar
-  bool keep_boundary = false;      // planar: no new points on what bounds the domain
+  double gradation = kInfinity;    // planar: how much longer an edge may be than the next one
+  std::vector<DivisionRequest> divisions;  // planar
+  bool keep_boundary = false;              // planar: no new points on what bounds the domain
   // Planar: the model is one of that many equal sectors about the centre; nullopt: it is whole.
   std::optional<std::int32_t> sector;
   double chord_error_rel = 1e-3;            // planar: of chords from their arcs, of the radius

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -24,6 +25,7 @@
 #include "core/plane/refine/criteria.hpp"
 #include "core/plane/refine/local_sizes.hpp"
 #include "core/plane/refine/refiner.hpp"
+#include "core/plane/symmetry/split_segment.hpp"
 
 namespace symcell::plane {
 namespace {
@@ -215,10 +217,14 @@ Result<Refined> refine(const Pslg& model,
                        Stopwatch& watch,
                        Statistics& stats,
                        ExecutionContext& context) {
-  const auto sizes = resolve_sizes(model, symmetric, options.sizes);
+  auto sizes = resolve_sizes(model, symmetric, options.sizes);
   if (!sizes) return error_of(sizes);
   auto start = triangulate_initial(symmetric, context);
   if (!start) return error_of(start);
+  if (options.gradation < kInfinity) {
+    sizes->graded =
+        std::make_shared<GradedSize>(grade_sizes(start->mesh, *sizes, options.gradation));
+  }
   stats.timings_ms.initial += watch.lap();
   Criteria criteria(start->mesh, start->subdomains, options, *sizes);
   SYMCELL_TRY(check_area_budget(*start, criteria, context));
@@ -313,10 +319,12 @@ Result<MeshOutcome> mesh_pslg(const Pslg& model,
   Statistics& stats = outcome.statistics;
   Stopwatch watch;
   context.report(Phase::kInitial, 0.08);
-  std::optional<SymmetricPslg> chorded;
-  if (!symmetric.bulges.empty()) chorded = symmetric;
-  const auto refined = chorded ? refine_on_arcs(model, *chorded, options, watch, stats, context)
-                               : refine(model, symmetric, options, watch, stats, context);
+  // The model as it is meshed: with the vertices that the options and finer chords ask for.
+  SymmetricPslg meshed = symmetric;
+  SYMCELL_TRY(divide_segments(meshed, options.divisions));
+  const bool has_arcs = !meshed.bulges.empty();
+  const auto refined = has_arcs ? refine_on_arcs(model, meshed, options, watch, stats, context)
+                                : refine(model, meshed, options, watch, stats, context);
   if (!refined) return error_of(refined);
   const QuotientTriangulation& mesh = refined->start.mesh;
   record(refined->work, mesh, symmetric.orbit_points.size(), stats.refinement);
@@ -327,7 +335,7 @@ Result<MeshOutcome> mesh_pslg(const Pslg& model,
   SYMCELL_TRY(count_exempt(mesh, refined->criteria, stats));
   auto cut = cut_cell(mesh);
   if (!cut) return error_of(cut);
-  outcome.mesh = build_cell_mesh(refined->start, *cut, chorded ? *chorded : symmetric);
+  outcome.mesh = build_cell_mesh(refined->start, *cut, meshed);
   stats.timings_ms.cell = watch.lap();
   SYMCELL_TRY(check_cell(outcome.mesh));
   stats.timings_ms.check += watch.lap();
@@ -337,8 +345,8 @@ Result<MeshOutcome> mesh_pslg(const Pslg& model,
     if (!elevated) return error_of(elevated);
     outcome.mesh = std::move(*elevated);
   }
-  if (chorded) {
-    const std::size_t off_arcs = vertices_on_chords(*chorded, mesh);
+  if (has_arcs) {
+    const std::size_t off_arcs = vertices_on_chords(meshed, mesh);
     if (off_arcs + straightened > 0) {
       stats.warnings.push_back(arcs_as_chords_warning(off_arcs, straightened));
     }

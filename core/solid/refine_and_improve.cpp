@@ -161,10 +161,13 @@ Result<void> improve(Editor& editor,
   return improver.mend(goal, work.limits.last_passes);
 }
 
+// A point for the sake of shape stands this share of the shortest edge from its vertices at least.
+constexpr double kLeastShare = 0.45;
+
 // Counts the exempt by reason and finds the worst shape. A broken size bound must not be handed
-// out.
+// out, unless points that it would need are forbidden.
 Result<void> count_exempt(const Editor& editor, const Criteria& criteria, RefinedSolid& result) {
-  std::uint64_t sharp = 0, axis = 0;
+  std::uint64_t sharp = 0, axis = 0, short_edges = 0;
   const QuotientTetrahedralization& mesh = editor.mesh();
   for (TetId t = 0; t < mesh.tet_slots(); ++t) {
     if (!mesh.alive(t)) continue;
@@ -175,6 +178,10 @@ Result<void> count_exempt(const Editor& editor, const Criteria& criteria, Refine
     double& least = exemption == Exemption::kNone ? result.least_sine : result.least_exempt_sine;
     least = std::min(least, sine);
     if (criteria.size_excess2(m, mesh.tet(t).region) > 1) {
+      if (criteria.min_edge() > 0) {
+        ++short_edges;
+        continue;
+      }
       const Point3 x = mesh.corner_point(t, 0);
       return fail(ErrorCode::kBoundUnreachable,
                   "a volume or edge bound cannot be reached: a tetrahedron of volume " +
@@ -183,13 +190,15 @@ Result<void> count_exempt(const Editor& editor, const Criteria& criteria, Refine
                       ") of the axis' frame stays too large; raise max_volume or max_edge");
     }
     if (criteria.is_bad(m, mesh.tet(t).region, exemption)) {
-      ++result.guarded;
+      const bool too_short = kLeastShare * std::sqrt(m.shortest2) < criteria.min_edge();
+      ++(too_short ? short_edges : result.guarded);
     } else if (criteria.is_bad(m, mesh.tet(t).region, Exemption::kNone)) {
       ++(exemption == Exemption::kAxis ? axis : sharp);
     }
   }
   if (sharp > 0) result.exempt.push_back({"small_input_angle", sharp});
   if (axis > 0) result.exempt.push_back({"fold_angle_at_axis", axis});
+  if (short_edges > 0) result.exempt.push_back({"min_edge", short_edges});
   if (result.guarded > 0) result.exempt.push_back({"near_small_feature", result.guarded});
   return {};
 }

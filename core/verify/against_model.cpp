@@ -9,6 +9,7 @@
 #include "core/geometry/point_tree.hpp"
 #include "core/geometry/segment_index.hpp"
 #include "core/geometry/self_intersections.hpp"
+#include "core/solid/surface/make_whole.hpp"
 #include "core/solid/surface/shells.hpp"
 #include "core/solid/surface/t_junctions.hpp"
 #include "core/solid/surface/weld.hpp"
@@ -248,6 +249,22 @@ double planar_miss(const PointTree& vertices,
 
 Result<ExaminedModel> examine_model(const Model& model) {
   return std::visit([](const auto& given) { return examine(given); }, model);
+}
+
+Result<TriangleSurface> all_sectors(const TriangleSurface& sector,
+                                    std::int32_t sectors,
+                                    const AxisFrame& axis,
+                                    double tolerance_rel) {
+  SYMCELL_TRY(check_triangles(sector));
+  const double size = diameter(sector.vertices);
+  IndexedSurface closed = closed_surface(sector, size);
+  if (!closure_of(closed).closed) {
+    return fail(ErrorCode::kNotWatertight, "the surface of the sector is not closed");
+  }
+  ExecutionContext unlimited;
+  const auto shells = solid::orient_shells(closed, unlimited);
+  if (!shells) return error_of(shells);
+  return solid::make_whole(closed, sectors, axis, tolerance_rel * size);
 }
 
 std::vector<char> vertices_of_domain(const PlanarModel& model) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/geometry/axis_frame.hpp"
 #include "core/geometry/indexed_surface.hpp"
 #include "core/model/model.hpp"
 #include "core/plane/input/subdomains.hpp"
@@ -63,6 +64,13 @@ struct ExaminedModel {
 // Errors: those of a model that cannot be meshed.  `model` must outlive the result.
 // Cost: O(N log N).
 [[nodiscard]] Result<ExaminedModel> examine_model(const Model& model);
+
+// The surface of all sectors of which the given one bounds one; see solid::make_whole.
+// `tolerance_rel`: of the sector's diameter.
+[[nodiscard]] Result<TriangleSurface> all_sectors(const TriangleSurface& sector,
+                                                  std::int32_t sectors,
+                                                  const AxisFrame& axis,
+                                                  double tolerance_rel);
 
 // Per vertex whether it belongs to the domain: at a segment with the domain on a side, or loose
 // within it. Others, where a dangling segment may end, need not be nodes.

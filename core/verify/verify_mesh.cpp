@@ -99,6 +99,7 @@ class Verifier {
 
   // Planar models are compared as they were meshed.
   bool make_as_meshed(const internal::Turns& turns) {
+    if (const auto* surface = std::get_if<TriangleSurface>(model_)) return make_whole(*surface);
     const auto* pslg = std::get_if<Pslg>(model_);
     if (pslg == nullptr) return true;
     auto made = internal::model_as_meshed(*pslg, corners_of_full(turns), options_);
@@ -113,6 +114,20 @@ class Verifier {
       checks_.add("model.arcs", coarse.empty() && beside.empty(), coarse + beside);
     }
     as_meshed_ = std::move((*made)->pslg);
+    return true;
+  }
+
+  // All sectors of which a surface bounds one, about the cell's axis.
+  bool make_whole(const TriangleSurface& surface) {
+    if (!options_.sector) return true;
+    auto whole = internal::all_sectors(
+        surface, *options_.sector, AxisFrame::of_axis(cell_.axis_origin, cell_.axis_direction),
+        options_.model_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel));
+    if (!whole) {
+      checks_.add("model.valid", false, whole.error().message);
+      return false;
+    }
+    as_meshed_ = std::move(*whole);
     return true;
   }
 

@@ -130,7 +130,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.0, kMaxMinAngleDeg));
   command
       ->add_option("--sector", arguments->sector,
-                   "planar: the model is one of N sectors, as it was meshed with")
+                   "the model is one of N sectors, as it was meshed with; of solids a surface")
       ->type_name("N")
       ->check(CLI::Range(2, kMaxFold));
   command->add_option("--center", arguments->center, "planar: the centre of the sectors [0,0]")

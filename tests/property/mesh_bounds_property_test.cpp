@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <string>
@@ -238,6 +239,96 @@ TEST(MeshBoundsProperty, SizesHoldAtMarkersAndVerticesAndTheirCopies) {
     options.sizes = {{SizeRequest::Kind::kVertex, 99, 0.03}};
     EXPECT_EQ(mesh(model, options).error().code, ErrorCode::kBadOption);
   }
+}
+
+// A ring of two loops, marker 1 without and 2 within.
+SectorBuilder ring_of_markers(std::int32_t fold) {
+  SectorBuilder builder(fold);
+  const auto outer = builder.add_vertex({1, 0});
+  const auto inner = builder.add_vertex({0.5, 0});
+  builder.add_loop({outer}, 1);
+  builder.add_loop({inner}, 2);
+  builder.add_hole({0, 0});
+  return builder;
+}
+
+TEST(MeshBoundsProperty, EdgesGrowByTheGradationAwayFromSmallOnes) {
+  constexpr double kSmall = 0.01;
+  SectorBuilder builder = ring_of_markers(6);
+  const Pslg& model = builder.pslg();
+  for (const bool plain : {false, true}) {
+    std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max();
+    for (const double gradation : {1.1, 1.3, 2.0, 1e6}) {
+      MeshOptions options;
+      options.plain = plain;
+      options.sizes = {{SizeRequest::Kind::kVertex, 0, kSmall}};
+      options.gradation = gradation;
+      const auto outcome = mesh(model, options);
+      ASSERT_TRUE(outcome) << outcome.error().message;
+      EXPECT_EQ(outcome->mesh.fold, 6);
+      EXPECT_GE(outcome->statistics.cell.min_angle_deg, 30);
+      EXPECT_TRUE(outcome->statistics.exempt.empty());
+      EXPECT_LE(outcome->statistics.cell.elements, fewest) << gradation;
+      fewest = outcome->statistics.cell.elements;
+      const RestoredMesh full = restore(outcome->mesh);
+      for (std::size_t h = 0; h < 3 * full.triangles.size(); ++h) {
+        const Point2 a = full.at(full.from(h)), b = full.at(full.to(h));
+        for (const Point2 v : model.vertices) {
+          if (std::abs(length(v) - 1) > 1e-9) continue;
+          const double wanted = kSmall + (gradation - 1) * std::min(distance(v, a), distance(v, b));
+          EXPECT_LE(distance(a, b), gradation * wanted * (1 + 1e-9));
+        }
+      }
+    }
+  }
+}
+
+// Short segments and narrow places are what edges grow from where no size is given.
+TEST(MeshBoundsProperty, EdgesGrowAwayFromNarrowPlaces) {
+  MeshOptions options;
+  const auto free = mesh(plate_with_gap(0.02), options);
+  options.gradation = 1.2;
+  const auto graded = mesh(plate_with_gap(0.02), options);
+  ASSERT_TRUE(free && graded);
+  EXPECT_GT(graded->statistics.cell.elements, free->statistics.cell.elements);
+  for (const auto& law : broken_laws(plate_with_gap(0.02), 396 + 0.04, options, *graded)) {
+    ADD_FAILURE() << law;
+  }
+}
+
+TEST(MeshBoundsProperty, DividedSegmentsHaveEqualPartsAndNoOtherPoints) {
+  constexpr std::int32_t kFold = 7, kParts = 9;
+  SectorBuilder builder = ring_of_markers(kFold);
+  const Pslg& model = builder.pslg();
+  const double part = 2 * 0.5 * std::sin(std::numbers::pi / kFold) / kParts;
+  for (const bool plain : {false, true}) {
+    MeshOptions options;
+    options.plain = plain;
+    options.divisions = {{2, kParts}};
+    options.max_edge = 0.03;  // on the other loop alone: shorter than the parts
+    const auto outcome = mesh(model, options);
+    ASSERT_TRUE(outcome) << outcome.error().message;
+    EXPECT_EQ(outcome->mesh.fold, kFold);
+    const RestoredMesh full = restore(outcome->mesh);
+    std::map<std::pair<std::int32_t, std::int32_t>, int> sides;
+    for (std::size_t h = 0; h < 3 * full.triangles.size(); ++h) {
+      ++sides[std::minmax(full.from(h), full.to(h))];
+    }
+    int inner = 0;
+    for (const auto& [edge, count] : sides) {
+      const Point2 a = full.at(edge.first), b = full.at(edge.second);
+      if (count != 1 || std::max(length(a), length(b)) > 0.5 + 1e-9) continue;
+      ++inner;
+      EXPECT_NEAR(distance(a, b), part, 1e-9);
+    }
+    EXPECT_EQ(inner, kFold * kParts);
+    EXPECT_GT(exempt_of(*outcome, "kept_boundary"), 0U) << "parts are longer than max_edge";
+    options.max_edge = kInfinity;
+    EXPECT_EQ(exempt_of(*mesh(model, options), "kept_boundary"), 0U);
+  }
+  MeshOptions options;
+  options.divisions = {{9, 2}};
+  EXPECT_EQ(mesh(model, options).error().code, ErrorCode::kBadOption);
 }
 
 // Within what greedy coarsening leaves to chance: a twentieth, and a handful in small cells.

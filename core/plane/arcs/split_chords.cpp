@@ -5,7 +5,7 @@
 #include <tuple>
 #include <vector>
 
-#include "core/geometry/arc.hpp"
+#include "core/plane/symmetry/split_segment.hpp"
 
 namespace symcell::plane {
 namespace {
@@ -81,37 +81,15 @@ std::optional<SymmetricPslg> split_chords(const SymmetricPslg& pslg,
   if (splits.empty()) return std::nullopt;
   measure_shares(pslg, mesh, splits);
   SymmetricPslg result = pslg;
+  std::vector<double> shares;
   for (std::size_t i = 0; i < splits.size();) {
     const auto s = static_cast<std::size_t>(splits[i].segment);
-    const SymmetricSegment whole = pslg.segments[s];
-    const Point2 a = place(pslg, mesh.rotations(), whole.a);
-    const Point2 b = place(pslg, mesh.rotations(), whole.b);
-    const double angle = angle_of_bulge(pslg.bulges[s]);
-    // The first part takes the place of the chord.
-    OrbitVertex last = whole.a;
-    double from = 0;
-    bool first = true;
-    const auto add = [&](OrbitVertex end, double to) {
-      const SymmetricSegment part{last, end, whole.first_marker};
-      const double bulge = bulge_of_angle((to - from) * angle);
-      if (first) {
-        result.segments[s] = part;
-        result.bulges[s] = bulge;
-      } else {
-        result.segments.push_back(part);
-        result.bulges.push_back(bulge);
-      }
-      first = false;
-      last = end;
-      from = to;
-    };
+    shares.clear();
     for (; i < splits.size() && static_cast<std::size_t>(splits[i].segment) == s; ++i) {
-      if (!(splits[i].share > from && splits[i].share < 1)) continue;
-      const auto orbit = static_cast<std::int32_t>(result.orbit_points.size());
-      result.orbit_points.push_back(arc_point(a, b, pslg.bulges[s], splits[i].share));
-      add({orbit, 0}, splits[i].share);
+      const double from = shares.empty() ? 0 : shares.back();
+      if (splits[i].share > from && splits[i].share < 1) shares.push_back(splits[i].share);
     }
-    add(whole.b, 1);
+    split_segment(result, s, shares);
   }
   return result;
 }

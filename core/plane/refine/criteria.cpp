@@ -29,7 +29,7 @@ Criteria::Criteria(const QuotientTriangulation& mesh,
                    const MeshOptions& options,
                    const LocalSizes& sizes)
     : keep_boundary_(options.keep_boundary),
-      has_local_sizes_(!sizes.of_segment.empty() || !sizes.at_vertex.empty()),
+      has_local_sizes_(!sizes.of_segment.empty() || !sizes.at_vertex.empty() || sizes.graded),
       sizes_(sizes) {
   const double bound = options.min_angle_deg > 0 ? options.min_angle_deg + kAngleMarginDeg : 0;
   goal_angle_ = bound * kRadiansADegree;
@@ -132,7 +132,7 @@ bool Criteria::edge_too_long(const QuotientTriangulation& mesh,
                              std::uint32_t j) const {
   double limit2 = max_edge2_;
   if (has_local_sizes_) {
-    double limit = std::min(max_edge_at(t.v[next3(j)]), max_edge_at(t.v[prev3(j)]));
+    double limit = std::min(max_edge_at(mesh, t.v[next3(j)]), max_edge_at(mesh, t.v[prev3(j)]));
     if (t.seg[j] != kNoSubsegment && !sizes_.of_segment.empty()) {
       const auto parent = static_cast<std::size_t>(mesh.subsegment(t.seg[j]).parent);
       limit = std::min(limit, sizes_.of_segment[parent]);
@@ -140,6 +140,15 @@ bool Criteria::edge_too_long(const QuotientTriangulation& mesh,
     limit2 = std::min(limit2, limit * limit * (1 - kLengthSafety));
   }
   return squared_distance(mesh.corner_point(t, next3(j)), mesh.corner_point(t, prev3(j))) > limit2;
+}
+
+double Criteria::graded_edge_at(const QuotientTriangulation& mesh, VertexId v) const {
+  const auto at = static_cast<std::size_t>(v);
+  const Point2 p = mesh.point(v);
+  if (at >= graded_edges_.size()) graded_edges_.resize(mesh.vertex_slots());
+  EdgeAt& known = graded_edges_[at];
+  if (known.longest == 0 || !(known.p == p)) known = {p, sizes_.graded->max_edge(p)};
+  return known.longest;
 }
 
 bool Criteria::has_short_edge(const QuotientTriangulation& mesh, const Triangle& t) const {

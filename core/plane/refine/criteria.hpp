@@ -9,6 +9,7 @@
 // centre, whose other two angles are near 90 degrees.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -82,8 +83,16 @@ class Criteria {
 
   // Whether something forbids points that the bounds would need: then what cannot be improved stays as
   // it is, and is exempt.
-  [[nodiscard]] bool may_leave_bad() const { return has_least_edge() || keep_boundary_; }
-  [[nodiscard]] bool keeps_boundary() const { return keep_boundary_; }
+  [[nodiscard]] bool may_leave_bad() const { return has_least_edge() || keeps_any_segment(); }
+  [[nodiscard]] bool keeps_any_segment() const {
+    return keep_boundary_ || !sizes_.kept_segment.empty();
+  }
+  // Whether subsegments of that segment of the input, on the boundary or not, get no vertices.
+  [[nodiscard]] bool keeps(std::int32_t segment, bool on_boundary) const {
+    return (keep_boundary_ && on_boundary) ||
+           (!sizes_.kept_segment.empty() &&
+            sizes_.kept_segment[static_cast<std::size_t>(segment)] != 0);
+  }
   // Whether edges have a least length. Then every change is looked at before it is kept.
   [[nodiscard]] bool has_least_edge() const { return min_edge2_ > 0; }
   [[nodiscard]] double min_edge2() const { return min_edge2_; }
@@ -100,10 +109,10 @@ class Criteria {
                                    const Triangle& t,
                                    std::uint32_t j) const;
   // How long edges at a vertex may be, inf: no bound but that for all.
-  [[nodiscard]] double max_edge_at(VertexId v) const {
-    return static_cast<std::size_t>(v) < sizes_.at_vertex.size()
-               ? sizes_.at_vertex[static_cast<std::size_t>(v)]
-               : kInfinity;
+  [[nodiscard]] double max_edge_at(const QuotientTriangulation& mesh, VertexId v) const {
+    const auto at = static_cast<std::size_t>(v);
+    const double asked = at < sizes_.at_vertex.size() ? sizes_.at_vertex[at] : kInfinity;
+    return sizes_.graded ? std::min(asked, graded_edge_at(mesh, v)) : asked;
   }
 
   [[nodiscard]] double goal_angle() const { return goal_angle_; }  // radians
@@ -152,6 +161,7 @@ class Criteria {
     Point2 to;
   };
 
+  [[nodiscard]] double graded_edge_at(const QuotientTriangulation& mesh, VertexId v) const;
   void find_corners(const QuotientTriangulation& mesh);
   void add_corner(const QuotientTriangulation& mesh, VertexId v, Point2 from, Point2 to);
   [[nodiscard]] bool in_narrow_corner(const QuotientTriangulation& mesh,
@@ -170,6 +180,11 @@ class Criteria {
   bool keep_boundary_ = false;
   bool has_local_sizes_ = false;
   LocalSizes sizes_;
+  struct EdgeAt {
+    Point2 p;
+    double longest = 0;
+  };
+  mutable std::vector<EdgeAt> graded_edges_;  // per vertex, for where it was when last asked for
   bool has_size_bound_ = false;
   bool centre_is_narrow_ = false;
   bool centre_is_exact_ = false;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/geometry/rotation.hpp"
 
@@ -15,6 +16,9 @@ namespace {
 // Vertices are found where symmetrising left them: within this share of the diameter, beside the move
 // that it reports.
 constexpr double kPlaceRel = 1e-9;
+
+// Points at which a segment asks for its size: more than that hardly change what lies between.
+constexpr double kMostSourcesOnSegment = 1000;
 
 constexpr const char* kPointer = "/options/sizes";
 
@@ -64,6 +68,11 @@ Result<LocalSizes> resolve_sizes(const Pslg& pslg,
                                  const SymmetricPslg& symmetric,
                                  const std::vector<SizeRequest>& sizes) {
   LocalSizes result;
+  for (std::size_t s = 0; s < symmetric.segments.size(); ++s) {
+    if (!symmetric.segments[s].divided) continue;
+    result.kept_segment.resize(symmetric.segments.size(), 0);
+    result.kept_segment[s] = 1;
+  }
   if (sizes.empty()) return result;
   const RotationTable rotations(symmetric.fold);
   std::vector<std::int64_t> given(symmetric.orbit_points.size(), -1);  // by which vertex
@@ -103,6 +112,45 @@ Result<LocalSizes> resolve_sizes(const Pslg& pslg,
     given[*orbit] = request.id;
   }
   return result;
+}
+
+GradedSize grade_sizes(const QuotientTriangulation& initial,
+                       const LocalSizes& sizes,
+                       double gradation) {
+  std::vector<double> size(initial.vertex_slots(), kInfinity);
+  for (std::size_t v = 0; v < sizes.at_vertex.size(); ++v) size[v] = sizes.at_vertex[v];
+  std::vector<GradedSize::Source> sources;
+  const auto add_copies = [&](Point2 p, bool is_centre, double h) {
+    for (std::int32_t k = 0; k < (is_centre ? 1 : initial.fold()); ++k) {
+      sources.push_back({initial.rotations().rotate(p, k), h});
+    }
+  };
+  for (TriangleId t = 0; t < initial.triangle_slots(); ++t) {
+    if (!initial.alive(t)) continue;
+    const Triangle& tri = initial.triangle(t);
+    for (std::uint32_t j = 0; j < 3; ++j) {
+      const std::uint32_t i = next3(j), k = prev3(j);
+      const Point2 a = initial.corner_point(tri, i), b = initial.corner_point(tri, k);
+      double h = distance(a, b);
+      if (tri.seg[j] != kNoSubsegment && !sizes.of_segment.empty()) {
+        const auto parent = static_cast<std::size_t>(initial.subsegment(tri.seg[j]).parent);
+        const double wanted = sizes.of_segment[parent];
+        // Between its ends a segment asks for its size, too.
+        const double parts = std::min(h / wanted, kMostSourcesOnSegment);
+        for (double n = 1; n < parts; ++n) add_copies(a + (n / parts) * (b - a), false, wanted);
+        h = std::min(h, wanted);
+      }
+      for (const std::uint32_t end : {i, k}) {
+        double& least = size[static_cast<std::size_t>(tri.v[end])];
+        least = std::min(least, h);
+      }
+    }
+  }
+  for (std::size_t v = 0; v < size.size(); ++v) {
+    const auto id = static_cast<VertexId>(v);
+    if (size[v] < kInfinity) add_copies(initial.point(id), id == initial.centre(), size[v]);
+  }
+  return {std::move(sources), gradation};
 }
 
 }  // namespace symcell::plane

@@ -2,16 +2,23 @@
 // Given for one vertex they hold at all its copies, as the mesh repeats.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/base/error.hpp"
 #include "core/model/mesh_options.hpp"
 #include "core/model/pslg.hpp"
+#include "core/plane/quotient/quotient_triangulation.hpp"
+#include "core/plane/refine/graded_size.hpp"
 #include "core/plane/symmetry/symmetric_pslg.hpp"
 
 namespace symcell::plane {
 
 struct LocalSizes {
+  // Edges that grow away from small ones; null: without a bound.
+  std::shared_ptr<const GradedSize> graded;
+  std::vector<std::uint8_t> kept_segment;  // per segment orbit: no new vertices; empty: none
   std::vector<double>
       of_segment;  // per segment orbit, in input units, inf: none; empty: none at all
   std::vector<double> at_vertex;  // per vertex orbit, likewise: of every edge at it
@@ -22,5 +29,11 @@ struct LocalSizes {
 [[nodiscard]] Result<LocalSizes> resolve_sizes(const Pslg& pslg,
                                                const SymmetricPslg& symmetric,
                                                const std::vector<SizeRequest>& sizes);
+
+// What edges may grow from: the sizes asked for, and the shortest edge at each vertex of the initial
+// mesh, so that narrow places count.
+[[nodiscard]] GradedSize grade_sizes(const QuotientTriangulation& initial,
+                                     const LocalSizes& sizes,
+                                     double gradation);
 
 }  // namespace symcell::plane

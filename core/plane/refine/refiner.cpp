@@ -196,9 +196,11 @@ Result<void> Refiner::split_queued_subsegments() {
 }
 
 bool Refiner::may_split(SubsegmentId s) const {
-  if (criteria_.keeps_boundary()) {
-    const HalfEdge h = mesh_.subsegment(s).half_edge;
-    if (mesh_.triangle(triangle_of(h)).nb[local_of(h)] == kNoHalfEdge) return false;
+  if (criteria_.keeps_any_segment()) {
+    const Subsegment& segment = mesh_.subsegment(s);
+    const HalfEdge h = segment.half_edge;
+    const bool on_boundary = mesh_.triangle(triangle_of(h)).nb[local_of(h)] == kNoHalfEdge;
+    if (criteria_.keeps(segment.parent, on_boundary)) return false;
   }
   const auto at = static_cast<std::size_t>(s);
   return at >= refused_.size() || refused_[at] == 0;

@@ -36,7 +36,8 @@ void StarSurgery::lift_edges(const std::vector<CavityEdge>& edges,
   out.clear();
   for (const CavityEdge& e : edges) {
     out.push_back({mesh_.lift(e.a.orbit, e.a.exponent), mesh_.lift(e.b.orbit, e.b.exponent),
-                   criteria_.max_area(e.face), kReachShare * criteria_.max_edge_at(e.a.orbit)});
+                   criteria_.max_area(e.face),
+                   kReachShare * criteria_.max_edge_at(mesh_, e.a.orbit)});
   }
 }
 

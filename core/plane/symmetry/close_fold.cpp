@@ -51,7 +51,9 @@ class Closer {
     }
     if (permuted) return permuted;
     if (outline) return outline;
-    return with_all_vertices();
+    auto all = with_all_vertices();
+    if (all && adds_vertices(*all)) all->copied_vertices = all_of(*all) - prepared_.points.size();
+    return all;
   }
 
  private:

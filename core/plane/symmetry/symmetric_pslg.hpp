@@ -25,6 +25,7 @@ struct SymmetricSegment {
   // First entry of this orbit in `segment_markers`: copy k has marker segment_markers[first + k] if
   // markers differ between copies (ignore_markers), else all copies share segment_markers[first].
   std::int32_t first_marker = 0;
+  bool divided = false;  // as asked for: it gets no more vertices
 };
 
 struct SymmetricPslg {
@@ -49,6 +50,9 @@ struct SymmetricPslg {
   // Not 0 where vertices of the input need not be vertices here, or are moved by more than the usual
   // tolerance: the share of the diameter to which its segments keep their places.
   double shape_tolerance_rel = 0;
+  // Copies of vertices where the model has none, as all sectors got the vertices of all for want of
+  // an outline that fits; 0 where that was asked for.
+  std::size_t copied_vertices = 0;
   std::int32_t geometry_fold = 1;  // the fold with markers and region attributes set aside
   bool fold_detected = false;
   bool centre_detected = false;

@@ -313,7 +313,11 @@ Result<SymmetricPslg> symmetrise_subdomains(const Pslg& pslg,
     return fail(ErrorCode::kDegenerateGeometry, "the segments enclose nothing to mesh");
   }
   context.report(Phase::kSymmetry, 0.04);
-  return Symmetriser(pslg, subdomains, options, prepared, context).run(ladder);
+  auto result = Symmetriser(pslg, subdomains, options, prepared, context).run(ladder);
+  if (result && result->copied_vertices > 0) {
+    result->warnings.push_back(vertices_copied_warning(result->fold, result->copied_vertices));
+  }
+  return result;
 }
 
 Result<SymmetricPslg> symmetrise(const Pslg& pslg,

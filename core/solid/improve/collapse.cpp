@@ -110,7 +110,7 @@ bool Surgery::merge(VertexId goes, OrbitVertex stays, double floor, Bounds bound
 }
 
 Surgery::Worth Surgery::merge_limits(double floor, const Worth& before) const {
-  if (lenient_) return {kOpeningShape, kFar, kFar};
+  if (lenient_) return {kOpeningShape, lenient_excess(), kFar};
   return {std::max(kLeastShape, std::min(floor, before.shape * (1 + kGain))),
           std::max(allowed_excess_, before.excess * (1 - kExcessGain)),
           std::max(allowed_excess_, before.exempt * (1 - kExcessGain))};

@@ -28,6 +28,8 @@ Surgery::Surgery(Editor& editor, const Criteria& criteria)
 }
 
 double Surgery::excess_of(const TetMeasures& m, std::int32_t region, Exemption exempt) const {
+  const double shortest2 = criteria_.min_edge() * criteria_.min_edge();
+  if (m.shortest2 < shortest2) return kTooShort * shortest2 / m.shortest2;
   const double excess = criteria_.excess(m, region, exempt);
   if (!size_kept_ || excess <= 1) return excess;
   const double sized = criteria_.size_excess2(m, region);

@@ -6,6 +6,7 @@
 // [Klincsek80].
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -89,6 +90,8 @@ class Surgery {
   static constexpr double kFar = std::numeric_limits<double>::infinity();  // no limit
   // Beyond any excess of a radius-edge ratio that is not of a flat tetrahedron.
   static constexpr double kOversized = 1e12;
+  // Edges shorter than the least allowed come before all else.
+  static constexpr double kTooShort = 1e24;
   // Stars this large are at hubs of the input; working there is slow and seldom helps. Below 256.
   static constexpr std::size_t kMaxStar = 120;
   // Least sine that a lenient operation may leave: 3 degrees.
@@ -121,7 +124,12 @@ class Surgery {
   [[nodiscard]] Exemption exemption_of(std::span<const OrbitVertex> corners) const;
   [[nodiscard]] static bool better(const Worth& now, const Worth& before);
   [[nodiscard]] bool accepts(const Worth& now, const Worth& before) const {
-    return lenient_ ? now.shape > kOpeningShape : better(now, before);
+    if (!lenient_) return better(now, before);
+    return now.shape > kOpeningShape && now.excess <= std::max(lenient_excess(), before.excess);
+  }
+  // Of operations that may break bounds, but make no edge too short.
+  [[nodiscard]] double lenient_excess() const {
+    return criteria_.min_edge() > 0 ? kTooShort : kFar;
   }
   // That edge and face removals must exceed.
   [[nodiscard]] double least_shape(const Worth& before) const {

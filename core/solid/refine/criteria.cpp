@@ -38,6 +38,7 @@ Criteria::Criteria(const InitialTetrahedralization& solid, const MeshOptions& op
       std::min(1.0, narrowing * narrowing) / (ratio * ratio);
   inverse_ratios2_[static_cast<std::size_t>(Exemption::kSmallInputAngle)] = 0;
   max_edge2_ = options.max_edge * options.max_edge * (1 - kBoundSafety);
+  min_edge_ = options.min_edge * (1 + kBoundSafety);
   narrow_ = solid.mesh.fold() > 1 && 360.0 / solid.mesh.fold() < kNarrowSectorDeg;
   for (const Subdomain& s : solid.subdomains) {
     max_volumes_.push_back(std::min(options.max_volume, s.max_volume) * (1 - kBoundSafety));

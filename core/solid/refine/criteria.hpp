@@ -53,6 +53,8 @@ class Criteria {
     return max_volumes_[static_cast<std::size_t>(region)];
   }
   [[nodiscard]] double max_edge2() const { return max_edge2_; }
+  // No point may come nearer to a vertex than this; 0: as near as the other bounds ask.
+  [[nodiscard]] double min_edge() const { return min_edge_; }
 
   [[nodiscard]] Exemption exemption(const QuotientTetrahedralization& mesh, const Tet& t) const {
     Exemption found = Exemption::kNone;
@@ -88,6 +90,7 @@ class Criteria {
 
   std::array<double, 3> inverse_ratios2_;  // by exemption
   double max_edge2_;
+  double min_edge_;
   bool narrow_;
   std::vector<double> max_volumes_;           // per region
   std::vector<std::uint8_t> sharp_segments_;  // per segment

@@ -141,7 +141,7 @@ Refiner::Cause Refiner::cause_of(TetId t) const {
   return cause;
 }
 
-bool Refiner::allowed(const Cavity& cavity, const Cause& cause, double share) const {
+double Refiner::nearest_to(const Cavity& cavity) const {
   double nearest = std::sqrt(cavity.nearest2);
   if (mesh_.fold() > 1) {
     const Point3 p = cavity.point;
@@ -149,6 +149,12 @@ bool Refiner::allowed(const Cavity& cavity, const Cause& cause, double share) co
     // Copies of the point itself; on the axis it has none.
     if (rho > 0) nearest = std::min(nearest, 2 * rho * std::sin(std::numbers::pi / mesh_.fold()));
   }
+  return nearest;
+}
+
+bool Refiner::allowed(const Cavity& cavity, const Cause& cause, double share) const {
+  const double nearest = nearest_to(cavity);
+  if (nearest < criteria_.min_edge()) return false;
   if (cause.size) return nearest >= cause.least;
   if (shape_budget_ == 0 || mesh_.tet_count() > most_shaped_) return false;
   if (nearest < std::max(least_distance_, share * cause.shortest)) return false;
@@ -382,6 +388,7 @@ Refiner::Outcome Refiner::split_too_large(TetId t) {
   Location where;
   where.at = {t, 0};
   if (!find_cavity(middle, where, cause)) return Outcome::kRefused;
+  if (nearest_to(cavity_) < criteria_.min_edge()) return Outcome::kRefused;
   const Outcome done = insert(cavity_, VertexKind::kFree, -1, false, cause);
   if (done == Outcome::kInserted) ++counters_.interior_points;
   return done;

@@ -9,7 +9,8 @@
 // Termination: a point for the sake of shape is refused where it would come nearer to a vertex than
 // a share of the bad tetrahedron's shortest edge, and where a chain of points, each nearer than the
 // edge that caused it, gets longer than a given depth: below that edges cannot shrink any further.
-// Points for the sake of size are bounded by the volume and the edge length asked for. Beside that,
+// Points for the sake of size are bounded by the volume and the edge length asked for. No point at all
+// comes nearer to a vertex than `min_edge`. Beside that,
 // a run has a budget of points for the sake of shape, in proportion to the bad tetrahedra it finds
 // and to the points that size asks for: where acute facets or narrow gaps make every point cause
 // others, it ends long before edges reach their lower bound, and what is bad then is reported.
@@ -112,6 +113,8 @@ class Refiner {
   [[nodiscard]] Outcome split_too_large(TetId t);
   Outcome split_edge(TetId t, OrbitVertex a, OrbitVertex b, const Cause& cause);
   [[nodiscard]] bool find_cavity(Point3 p, const Location& where, const Cause& cause);
+  // From the point to the nearest vertex, its own copies included.
+  [[nodiscard]] double nearest_to(const Cavity& cavity) const;
   [[nodiscard]] bool allowed(const Cavity& cavity, const Cause& cause, double share) const;
   [[nodiscard]] Outcome insert(
       const Cavity& cavity, VertexKind kind, std::int32_t parent, bool on_axis, const Cause& cause);

@@ -3,15 +3,39 @@
 #include "core/solid/sector/surface_sector_source.hpp"
 #include "core/solid/sector/symmetrise.hpp"
 #include "core/solid/surface/clean_surface.hpp"
+#include "core/solid/surface/make_whole.hpp"
 #include "core/solid/symmetry/detect_surface_symmetry.hpp"
 
 namespace symcell::solid {
+namespace {
+
+// The surface, and where it bounds a sector that of all sectors, closed and oriented, or with its
+// problem.
+Result<CleanSurface> clean_whole(const TriangleSurface& surface,
+                                 const MeshOptions& options,
+                                 ExecutionContext& context) {
+  const double tolerance_rel =
+      options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel);
+  auto clean = clean_surface(surface, context, tolerance_rel, options.repair);
+  if (!clean || clean->problem || !options.sector) return clean;
+  const AxisFrame axis = AxisFrame::of_axis(options.axis_origin.value_or(Point3{0, 0, 0}),
+                                            options.axis_direction.value_or(Point3{0, 0, 1}));
+  const auto whole =
+      make_whole(clean->surface, *options.sector, axis, tolerance_rel * clean->diameter);
+  if (!whole) return error_of(whole);
+  auto all = clean_surface(*whole, context, tolerance_rel, options.repair);
+  if (all) all->repairs.insert(all->repairs.begin(), clean->repairs.begin(), clean->repairs.end());
+  return all;
+}
+
+}  // namespace
+
 Result<std::unique_ptr<SectorSource>> symmetrise_surface(const TriangleSurface& surface,
                                                          const MeshOptions& options,
                                                          ExecutionContext& context) {
   const double tolerance_rel =
       options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel);
-  auto clean = clean_surface(surface, context, tolerance_rel, options.repair);
+  auto clean = clean_whole(surface, options, context);
   if (!clean) return error_of(clean);
   if (clean->problem) return fail(*clean->problem);
   auto symmetry = detect_surface_symmetry(*clean, options, context);
@@ -23,9 +47,7 @@ Result<std::unique_ptr<SectorSource>> symmetrise_surface(const TriangleSurface& 
 Result<SolidInspection> inspect_surface(const TriangleSurface& surface,
                                         const MeshOptions& options,
                                         ExecutionContext& context) {
-  auto clean = clean_surface(surface, context,
-                             options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel),
-                             options.repair);
+  auto clean = clean_whole(surface, options, context);
   if (!clean) return error_of(clean);
   SolidInspection result;
   result.kind = "surface";

@@ -33,7 +33,10 @@ std::vector<OddEdge> branching_edges(const IndexedSurface& surface) {
 }
 
 std::string plural(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+  const std::string counted = std::to_string(count) + " ";
+  if (count == 1) return counted + noun;
+  if (noun.ends_with("ex")) return counted + noun.substr(0, noun.size() - 2) + "ices";
+  return counted + noun + "s";
 }
 
 std::string such_as_at(std::span<const Point3> places) {

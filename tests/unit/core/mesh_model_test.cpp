@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 
+#include "core/geometry/rotation.hpp"
 #include "tests/support/surface_builders.hpp"
 
 namespace symcell {
@@ -64,6 +66,64 @@ TEST(MeshModel, TakesADivisorWhereTheFoldHasNoMesh) {
   options = {};
   options.fold = 3;
   EXPECT_FALSE(mesh_model(cubes, options, context));
+}
+
+double shortest_edge(const SymmetryCellMesh& mesh) {
+  const RotationTable turns(mesh.fold);
+  double least = kInfinity;
+  for (std::size_t e = 0; e < mesh.elements.size(); e += 4) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) {
+        const auto place = [&](std::size_t c) {
+          const OrbitVertex node = mesh.nodes[static_cast<std::size_t>(mesh.elements[e + c])];
+          return turns.rotate(mesh.orbit_points[static_cast<std::size_t>(node.orbit)],
+                              node.exponent);
+        };
+        least = std::min(least, distance(place(i), place(j)));
+      }
+    }
+  }
+  return least;
+}
+
+std::uint64_t exempt_of(const MeshOutcome& outcome, const std::string& reason) {
+  for (const ExemptCount& e : outcome.statistics.exempt) {
+    if (e.reason == reason) return e.elements;
+  }
+  return 0;
+}
+
+// Solids whose own edges are longer: none of the mesh is shorter than asked for.
+TEST(MeshModel, NoEdgeOfASolidIsShorterThanTheLeast) {
+  for (const std::int32_t fold : {1, 4}) {
+    for (const bool plain : {false, true}) {
+      for (const double least : {0.1, 0.2, 0.3}) {
+        ExecutionContext context;
+        MeshOptions options;
+        options.fold = fold;
+        options.plain = plain;
+        options.max_edge = 0.7;
+        options.radius_edge = 1.1;
+        options.min_edge = least;
+        const auto outcome = mesh_model(box_surface({0, 0, 0}, {1, 1, 2}), options, context);
+        ASSERT_TRUE(outcome) << outcome.error().message;
+        EXPECT_NEAR(outcome->statistics.cell.measure, 2.0 / fold, 1e-9);
+        EXPECT_GE(shortest_edge(outcome->mesh), least) << fold << plain;
+      }
+    }
+  }
+}
+
+// Bounds that would take shorter edges end as exempt, not as an error.
+TEST(MeshModel, LeastEdgesOfSolidsEndWhatBoundsAskFor) {
+  ExecutionContext context;
+  MeshOptions options;
+  options.max_volume = 1e-4;
+  options.min_edge = 0.3;
+  const auto outcome = mesh_model(box_surface({0, 0, 0}, {1, 1, 2}), options, context);
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_GT(exempt_of(*outcome, "min_edge"), 0U);
+  EXPECT_GE(shortest_edge(outcome->mesh), 0.3);
 }
 
 }  // namespace

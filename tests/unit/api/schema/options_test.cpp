@@ -31,6 +31,7 @@ TEST(Options, JsonAndTextsSetTheSame) {
       "center": [1, -2.5], "symmetry_tolerance": 1e-4, "min_angle": 33, "max_area": 0.5,
       "max_edge": 2, "order": 2, "max_elements": 1000, "time_limit": 1.5, "seed": 7,
       "min_edge": 0.25, "sizes": "marker:3=0.5, vertex:17=0.75", "keep_boundary": true,
+      "gradation": 1.5, "divisions": "marker:3=8, marker:-4=1", "keep_vertices": true,
       "plain": true, "strict": true})"));
   const auto texts = options_from_texts({{"fold", "6"},
                                          {"ignore-markers", ""},
@@ -42,6 +43,9 @@ TEST(Options, JsonAndTextsSetTheSame) {
                                          {"min-edge", "0.25"},
                                          {"sizes", "marker:3=0.5,vertex 17=0.75"},
                                          {"keep-boundary", ""},
+                                         {"keep-vertices", ""},
+                                         {"gradation", "1.5"},
+                                         {"divisions", "marker 3=8,marker:-4=1"},
                                          {"order", "2"},
                                          {"max_elements", "1000"},
                                          {"time-limit", "1.5"},
@@ -61,6 +65,11 @@ TEST(Options, JsonAndTextsSetTheSame) {
   EXPECT_TRUE(json->strict);
   EXPECT_EQ(json->min_edge, 0.25);
   EXPECT_TRUE(json->keep_boundary);
+  EXPECT_TRUE(json->keep_vertices);
+  EXPECT_EQ(json->gradation, 1.5);
+  const std::vector<DivisionRequest> divisions = {{3, 8}, {-4, 1}};
+  EXPECT_EQ(json->divisions, divisions);
+  EXPECT_EQ(options_to_json(*json, kPlanar)["divisions"], "marker:3=8,marker:-4=1");
   const std::vector<SizeRequest> sizes = {{SizeRequest::Kind::kMarker, 3, 0.5},
                                           {SizeRequest::Kind::kVertex, 17, 0.75}};
   EXPECT_EQ(json->sizes, sizes);
@@ -73,6 +82,22 @@ TEST(Options, SizesThatAreNone) {
     EXPECT_EQ(code_of(from_text("sizes", sizes)), ErrorCode::kBadOption) << sizes;
   }
   EXPECT_EQ(code_of(options_from_json({{"sizes", 3}})), ErrorCode::kBadOption);
+}
+
+TEST(Options, DivisionsAndGradationsThatAreNone) {
+  for (const char* divisions : {"", "3=8", "marker:3", "marker:3=0", "marker:3=-1", "marker:3=2.5",
+                                "vertex:3=8", "marker:3=8,", "marker:3=1000001"}) {
+    EXPECT_EQ(code_of(from_text("divisions", divisions)), ErrorCode::kBadOption) << divisions;
+  }
+  for (const char* gradation : {"", "1", "0", "-2", "1.04", "nan", "fast"}) {
+    EXPECT_EQ(code_of(from_text("gradation", gradation)), ErrorCode::kBadOption) << gradation;
+  }
+  MeshOptions options;
+  options.gradation = 1.5;
+  EXPECT_EQ(code_of(options_for(ModelKind::kPlc, options)), ErrorCode::kBadOption);
+  options = {};
+  options.divisions = {{1, 2}};
+  EXPECT_EQ(code_of(options_for(ModelKind::kPlc, options)), ErrorCode::kBadOption);
 }
 
 TEST(Options, EdgesTooLongForTheirHalves) {
@@ -247,7 +272,7 @@ TEST(Options, SettingsTellEveryNameAndReadBack) {
   EXPECT_EQ(options_to_json(*back, kPlanar), json);
 }
 
-TEST(Options, ArcsAndSectorsArePlanar) {
+TEST(Options, ArcsArePlanarAndSectorsAnythingButPlcs) {
   const auto sector = from_text("sector", "8");
   ASSERT_TRUE(sector);
   EXPECT_EQ(sector->sector, 8);
@@ -256,8 +281,10 @@ TEST(Options, ArcsAndSectorsArePlanar) {
   EXPECT_EQ(chords->chord_error_rel, 0.01);
   for (const auto& options : {*sector, *chords}) {
     EXPECT_TRUE(options_for(kPlanar, options));
-    EXPECT_EQ(code_of(options_for(ModelKind::kSurface, options)), ErrorCode::kBadOption);
+    EXPECT_EQ(code_of(options_for(ModelKind::kPlc, options)), ErrorCode::kBadOption);
   }
+  EXPECT_TRUE(options_for(ModelKind::kSurface, *sector));
+  EXPECT_EQ(code_of(options_for(ModelKind::kSurface, *chords)), ErrorCode::kBadOption);
   for (const char* bad : {"1", "0", "2.5", "30001", "x"}) {
     EXPECT_EQ(code_of(from_text("sector", bad)), ErrorCode::kBadFold) << bad;
   }
