@@ -1,6 +1,7 @@
 // Initial tetrahedralizations of a solid, of one sector after the other.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -19,7 +20,7 @@ class Starts {
   explicit Starts(const SectorSource& source, const StartLimits& limits = {});
 
   // Whether sectors are left that were not tried.
-  [[nodiscard]] bool has_next() const { return !sectors_.empty() || next_ < most_; }
+  [[nodiscard]] bool has_next() const { return !sectors_.empty() || next_ < most_candidates(); }
 
   // Of the next sector that can be tetrahedralized; at first of those worth comparing the one that
   // promises the smallest mesh.
@@ -30,6 +31,12 @@ class Starts {
   [[nodiscard]] std::size_t effort() const { return effort_; }
 
  private:
+  // Candidates that are not preferred are for want of others, or where there is time for them.
+  [[nodiscard]] std::int32_t most_candidates() const {
+    const bool in_want = cost_ == std::numeric_limits<double>::infinity();
+    const bool in_time = effort_ + source_.effort() <= limits_.start_budget;
+    return in_want || in_time ? most_ : std::min(most_, source_.preferred());
+  }
   [[nodiscard]] bool is_worth_comparing() const;
   [[nodiscard]] bool cuts_are_alike() const;
   [[nodiscard]] Result<void> cut_one_more(ExecutionContext& context);

@@ -61,6 +61,10 @@ constexpr double kFlatShareOfTolerance = 0.02;
 // any thin triangle is left. With narrow corners two results are enough.
 constexpr std::array<double, 6> kImproveShares = {0.35, 0.3, 0.25, 0.2, 0.1, 0.05};
 constexpr int kEnoughTaken = 2;
+// Likewise for what has been improved already. A pass that leaves more than that of the cost is the
+// last one: passes end, as each but the last makes the cost smaller by a factor.
+constexpr std::array<double, 2> kAgainShares = {0.3, 0.15};
+constexpr double kWorthwhile = 0.85;
 // Surfaces that must be divided for the sake of their shapes take their time: no more shares once
 // the results have so many triangles, and so many times those given.
 constexpr std::size_t kManyTriangles = 20'000;
@@ -296,8 +300,44 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
     if (made > kManyTriangles + kManyTimes * given.triangles.size()) break;
   }
   if (!best) return fail(last);
-  best->made = made;
+  if (best->narrow > 0 || best->many_thin()) {
+    SYMCELL_TRY(improve_again(surface, *best, candidate, flatness, context));
+  }
+  best->made += made;
   return *best;
+}
+
+// What has been improved is a better surface to improve: strips that were merged, and corners that
+// were opened, let more be merged. Where no corner is narrow there is little to gain, and chance
+// decides. The result counts if it is still the input's shape.
+Result<void> SurfaceSectorSource::improve_again(QuotientSurface& surface,
+                                                SectorShape& shape,
+                                                const Candidate& candidate,
+                                                const FlatnessTolerances& flatness,
+                                                ExecutionContext& context) const {
+  std::size_t made = 0;
+  for (bool goes_on = true; goes_on;) {
+    goes_on = false;
+    for (const double share : kAgainShares) {
+      QuotientSurface improved = surface;
+      auto done = flatten_planar_patches(improved, flatness, context);
+      if (done) done = improve_surface(improved, share * candidate.tolerance, flatness, context);
+      SYMCELL_TRY(context.check());
+      made += improved.triangles.size();
+      if (!done) continue;
+      const SectorShape better = shape_of(improved);
+      if (!better.better_than(shape)) continue;
+      const auto same = check_shape(improved, candidate.shell_share, context);
+      SYMCELL_TRY(context.check());
+      if (!same) continue;
+      goes_on = better.cost < kWorthwhile * shape.cost;
+      shape = better;
+      surface = std::move(improved);
+      break;
+    }
+  }
+  shape.made = made;
+  return {};
 }
 
 Result<void> SurfaceSectorSource::check_shape(const QuotientSurface& surface,

@@ -62,6 +62,11 @@ class SurfaceSectorSource final : public SectorSource {
                                             const Candidate& candidate,
                                             const FlatnessTolerances& flatness,
                                             ExecutionContext& context) const;
+  [[nodiscard]] Result<void> improve_again(QuotientSurface& surface,
+                                           SectorShape& shape,
+                                           const Candidate& candidate,
+                                           const FlatnessTolerances& flatness,
+                                           ExecutionContext& context) const;
   // Of the input's shells and Euler characteristic, and of its volume, or off by that share of a
   // shell as thick as the symmetry error at most; near the input everywhere; without crossings.
   [[nodiscard]] Result<void> check_shape(const QuotientSurface& surface,
