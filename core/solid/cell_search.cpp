@@ -99,14 +99,15 @@ Result<CellSearch::Found> CellSearch::run() {
     // Rarely, in narrow sectors, a mesh has no cell without flaws: another one has.
     const bool may_go_on =
         cell.error().code == ErrorCode::kInternal && cells < tuning_.starts.cells;
-    if (!may_go_on || !starts_.has_next()) return error_of(cell);
     forget_best();
+    if (!may_go_on || !starts_.has_next()) return error_of(cell);
     ++cells;
   }
 }
 
 void CellSearch::forget_best() {
   best_.reset();
+  starts_.set_has_mesh(false);
   meshed_ = 0;
   rounds_ = tuning_.rounds;
 }
@@ -145,6 +146,7 @@ Result<void> CellSearch::mesh_another_start() {
   timings_.refine += watch.lap();
   if (refined) {
     if (!best_ || is_better(*refined, *best_, options_, limits)) best_ = std::move(*refined);
+    starts_.set_has_mesh(true);
     return {};
   }
   last_ = refined.error();

@@ -19,6 +19,8 @@ class Starts {
   // `source` must outlive the object.
   explicit Starts(const SectorSource& source, const StartLimits& limits = {});
 
+  // Candidates that are not preferred are for want of a mesh, or where there is time for them.
+  void set_has_mesh(bool has_mesh) { has_mesh_ = has_mesh; }
   // Whether sectors are left that were not tried.
   [[nodiscard]] bool has_next() const { return !sectors_.empty() || next_ < most_candidates(); }
 
@@ -31,11 +33,9 @@ class Starts {
   [[nodiscard]] std::size_t effort() const { return effort_; }
 
  private:
-  // Candidates that are not preferred are for want of others, or where there is time for them.
   [[nodiscard]] std::int32_t most_candidates() const {
-    const bool in_want = cost_ == std::numeric_limits<double>::infinity();
     const bool in_time = effort_ + source_.effort() <= limits_.start_budget;
-    return in_want || in_time ? most_ : std::min(most_, source_.preferred());
+    return !has_mesh_ || in_time ? most_ : std::min(most_, source_.preferred());
   }
   [[nodiscard]] bool is_worth_comparing() const;
   [[nodiscard]] bool cuts_are_alike() const;
@@ -46,6 +46,7 @@ class Starts {
   std::int32_t most_;
   std::int32_t next_ = 0;  // candidate of the source
   std::size_t effort_ = 0;
+  bool has_mesh_ = false;
   std::vector<Sector> sectors_;  // cut already; the most promising is the last
   double cost_ = std::numeric_limits<double>::infinity();  // least of those that went well
   Error last_;

@@ -7,6 +7,10 @@
 namespace symcell::solid {
 namespace {
 
+// Edges that turn by less, in radians, are one segment: where its middle vertex goes, the length changes by
+// the square of that.
+constexpr double kStraight = 1e-5;
+
 class SectorBuilder {
  public:
   explicit SectorBuilder(const QuotientSurface& surface)
@@ -128,7 +132,19 @@ class SectorBuilder {
     std::int32_t vertex;
     std::int32_t edge;
     Side first, second;
+    Point3 direction;  // to the other end, in the frame of copy 0 of the vertex
   };
+
+  [[nodiscard]] Point3 direction_from(const QuotientEdgeUse& use, bool first) const {
+    const QuotientTriangle& t = s_.triangles[use.triangle];
+    const OrbitVertex v = end(t, use.side, first ? 0 : 1), other = end(t, use.side, first ? 1 : 0);
+    const Point3 d = corner_point(s_, rotations_, other) - corner_point(s_, rotations_, v);
+    return rotations_.rotate(d, rotations_.reduce(-v.exponent));
+  }
+
+  [[nodiscard]] static bool in_one_line(const Point3& d, const Point3& e) {
+    return dot(d, e) < 0 && length(cross(d, e)) <= kStraight * length(d) * length(e);
+  }
 
   [[nodiscard]] Side side_of(const QuotientEdgeUse& use, std::int32_t exponent) const {
     const std::int32_t t = use.triangle;
@@ -154,7 +170,7 @@ class SectorBuilder {
           return end(s_.triangles[use.triangle], use.side, first ? 0 : 1).exponent;
         };
         EdgeEnd entry{v, static_cast<std::int32_t>(e), side_of(a, exponent(a)),
-                      side_of(b, exponent(b))};
+                      side_of(b, exponent(b)), direction_from(a, a.forward != high)};
         if (entry.second < entry.first) std::swap(entry.first, entry.second);
         ends.push_back(entry);
       }
@@ -175,11 +191,12 @@ class SectorBuilder {
       const EdgeEnd& x = ends[begin];
       auto& kind = sector_.kinds[orbit_[x.vertex]];
       kind = SectorVertexKind::kFixed;
-      // Two edges between the same two planes are on their common line.
+      // Two edges between the same two planes are on their common line, if the planes are not nearly
+      // one: then edges between them may have any direction.
       if (stop - begin == 2 && s_.on_axis[x.vertex] == 0) {
         const EdgeEnd& y = ends[begin + 1];
         if (x.edge != y.edge && x.first == y.first && x.second == y.second &&
-            x.first.facet != x.second.facet) {
+            x.first.facet != x.second.facet && in_one_line(x.direction, y.direction)) {
           kind = SectorVertexKind::kOnSegment;
           const std::int32_t i = find(x.edge), j = find(y.edge);
           if (i != j) root[std::max(i, j)] = std::min(i, j);
