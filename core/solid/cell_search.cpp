@@ -109,40 +109,29 @@ void CellSearch::forget_best() {
   best_.reset();
   starts_.set_has_mesh(false);
   meshed_ = 0;
-  rounds_ = tuning_.rounds;
-}
-
-// The growth that a mesh is allowed is meant against cascades, and may be what kept it bad.
-bool CellSearch::may_grow() const {
-  return !options_.plain && has_many_bad(*best_, tuning_.starts) &&
-         best_->count() <= tuning_.starts.small_cell &&
-         rounds_.most_growth == tuning_.rounds.most_growth;
 }
 
 bool CellSearch::wants_another_start() {
-  growing_ = false;
   if (meshed_ == 0) return true;
   const StartLimits& limits = tuning_.starts;
   if (out_of_time_ || meshed_ >= limits.meshes_if_bad || !starts_.has_next()) return false;
   if (!best_) return true;
-  growing_ = may_grow();
-  return growing_ || should_try_another_start(*best_, meshed_, starts_.effort(), options_, limits);
+  return should_try_another_start(*best_, meshed_, starts_.effort(), options_, limits);
 }
 
 // An error: no other start is to be tried.
 Result<void> CellSearch::mesh_another_start() {
   const StartLimits& limits = tuning_.starts;
   ++meshed_;
-  if (growing_) rounds_.most_growth *= limits.more_growth;
   Stopwatch watch;
   if (!best_) context_.report(Phase::kInitial, 0.08);
   auto solid = starts_.next(context_);
   timings_.initial += watch.lap();
   const std::uint64_t most =
-      best_ ? (growing_ ? limits.more_growth : limits.most_times_larger) * best_->count()
-            : std::numeric_limits<std::uint64_t>::max();
-  auto refined = solid ? refine_and_improve(std::move(*solid), options_, most, context_, rounds_)
-                       : error_of(solid);
+      best_ ? limits.most_times_larger * best_->count() : std::numeric_limits<std::uint64_t>::max();
+  auto refined =
+      solid ? refine_and_improve(std::move(*solid), options_, most, context_, tuning_.rounds)
+            : error_of(solid);
   timings_.refine += watch.lap();
   if (refined) {
     if (!best_ || is_better(*refined, *best_, options_, limits)) best_ = std::move(*refined);

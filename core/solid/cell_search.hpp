@@ -39,15 +39,13 @@ class CellSearch {
         tuning_(tuning),
         context_(context),
         timings_(timings),
-        starts_(source, tuning.starts),
-        rounds_(tuning.rounds) {}
+        starts_(source, tuning.starts) {}
 
   // Errors: all meshing and limit codes; kInternal if no mesh has a cell without flaws.
   [[nodiscard]] Result<Found> run();
 
  private:
   [[nodiscard]] bool wants_another_start();
-  [[nodiscard]] bool may_grow() const;
   [[nodiscard]] Result<void> mesh_another_start();
   [[nodiscard]] Result<SymmetryCellMesh> cell_of_best();
   void forget_best();
@@ -58,10 +56,8 @@ class CellSearch {
   ExecutionContext& context_;
   Statistics::TimingsMs& timings_;
   Starts starts_;
-  RoundLimits rounds_;  // as they are now
   std::optional<RefinedSolid> best_;
-  int meshed_ = 0;        // starts since the last best one was forgotten
-  bool growing_ = false;  // the next mesh may be many times larger than the best one
+  int meshed_ = 0;  // starts since the last best one was forgotten
   bool out_of_time_ = false;
   Error last_;
 };

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -164,6 +165,38 @@ Result<void> improve(Editor& editor,
 // A point for the sake of shape stands this share of the shortest edge from its vertices at least.
 constexpr double kLeastShare = 0.45;
 
+// The growth that a mesh is allowed is meant against cascades, and may be what kept it bad. It goes on
+// while that helps; else the mesh is what it was before.
+Result<void> grow_while_it_helps(std::optional<Editor>& editor,
+                                 QuotientTetrahedralization& mesh,
+                                 const Criteria& criteria,
+                                 const MeshOptions& options,
+                                 ExecutionContext& context,
+                                 Work& work) {
+  std::size_t bad = count_bad(*editor, criteria);
+  for (int growths = 0; growths < work.limits.most_growths; ++growths) {
+    const double share = static_cast<double>(bad) / static_cast<double>(mesh.tet_count());
+    if (bad <= work.limits.many_bad || share <= work.limits.many_bad_share) break;
+    const QuotientTetrahedralization before = mesh;
+    const Work work_before = work;
+    work.most_shaped = work.limits.more_growth * mesh.tet_count();
+    auto done = refine(*editor, criteria, kDepths[0], false, context, work);
+    // Where refinement alone makes more of them, improvement does not make up for it.
+    const bool hopeful = done && count_bad(*editor, criteria) <= bad;
+    if (hopeful) done = improve(*editor, criteria, options, context, work);
+    if (!done && done.error().code != ErrorCode::kElementLimit) return done;
+    const std::size_t left = done && hopeful ? count_bad(*editor, criteria) : bad;
+    if (static_cast<double>(left) > work.limits.least_decline * static_cast<double>(bad)) {
+      mesh = before;
+      work = work_before;
+      editor.emplace(mesh);
+      break;
+    }
+    bad = left;
+  }
+  return {};
+}
+
 // Counts the exempt by reason and finds the worst shape. A broken size bound must not be handed
 // out, unless points that it would need are forbidden.
 Result<void> count_exempt(const Editor& editor, const Criteria& criteria, RefinedSolid& result) {
@@ -261,25 +294,27 @@ Result<RefinedSolid> refine_and_improve(InitialTetrahedralization solid,
   RefinedSolid result;
   result.solid = std::move(solid);
   QuotientTetrahedralization& mesh = result.solid.mesh;
-  Editor editor(mesh);
-  const double volume = total_volume(editor);
+  std::optional<Editor> working(std::in_place, mesh);
+  const double volume = total_volume(*working);
   const Criteria criteria(result.solid, options);
-  const auto least = check_volume_budget(editor, criteria, context);
+  const auto least = check_volume_budget(*working, criteria, context);
   if (!least) return error_of(least);
   result.least_count = *least;
   {
-    Surgery surgery(editor, criteria);
+    Surgery surgery(*working, criteria);
     static_cast<void>(Improver(surgery, criteria, context).collapse_cut_vertices());
   }
   Work work;
   work.limits = limits;
   work.most_tets = most_tets;
-  work.least_distance = work.limits.least_distance * shortest_edge(editor);
+  work.least_distance = work.limits.least_distance * shortest_edge(*working);
   if (!options.plain) {
-    auto ok = refine(editor, criteria, kDepths[0], false, context, work);
-    if (ok) ok = improve(editor, criteria, options, context, work);
+    auto ok = refine(*working, criteria, kDepths[0], false, context, work);
+    if (ok) ok = improve(*working, criteria, options, context, work);
+    if (ok) ok = grow_while_it_helps(working, mesh, criteria, options, context, work);
     if (!ok) return error_of(ok);
   }
+  Editor& editor = *working;
   if (options.plain || options.delaunay) {
     auto ok = refine_alone(editor, criteria, options, context, work);
     if (!ok) return error_of(ok);

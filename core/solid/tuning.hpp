@@ -42,9 +42,6 @@ struct StartLimits {
   // More bad tetrahedra than this share come of the input, whatever the cut; a few may not.
   double hopeless_share = 0.01;
   double few_bad = 20;
-  // One more mesh of those may grow by so many times more: a thin ring had 2,960 bad tetrahedra of
-  // 4,779, and has none of 8,441 then.
-  std::uint64_t more_growth = 8;
   // A mesh with a dihedral angle of a sine below this counts as larger by a factor.
   double poor_sine = 0.26;          // 15 degrees
   double poor_exempt_sine = 0.087;  // 5 degrees: the input may have few more
@@ -81,6 +78,14 @@ struct RoundLimits {
   // input. Where it is not, it is a cascade.
   std::uint64_t most_growth = 4;
   std::uint64_t least_growth = 2'000;
+  // Where more bad tetrahedra are left than this share, and than a few, the mesh may grow on, by a factor
+  // at a time, as long as that leaves less than a share of them: a frame had 5,694 of 41,703, and has 139
+  // of 128,906 then; where acute facets make every point cause others, they become more.
+  double many_bad_share = 0.01;
+  std::size_t many_bad = 20;
+  std::uint64_t more_growth = 2;
+  double least_decline = 0.7;
+  int most_growths = 4;
   // For the sake of shape no edge gets shorter than this share of the shortest one of the first
   // mesh, whatever the runs: into spikes of the input they would shrink without end.
   double least_distance = 1.0 / 256;
