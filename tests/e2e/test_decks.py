@@ -93,7 +93,7 @@ class CalculixTest(unittest.TestCase):
             copies = 1 if diameter == 0 or 2 * diameter == n else 2
             expected += [f for f in frequencies for _ in range(copies)]
         expected = sorted(f for f in expected if RIGID * top < f < top * (1 - AGREEMENT))
-        self.assertGreater(len(expected), 3)
+        self.assertGreater(len(expected), 1)
         if axis_inside:
             for f in expected:
                 self.assertTrue(any(abs(f - g) <= AGREEMENT * g for g in known), (f, known))
@@ -190,6 +190,45 @@ class CalculixTest(unittest.TestCase):
                     held = "boundary_1_support" if "boundary_1_support" in deck else "boundary_1"
                     self.solve(deck + f"*BOUNDARY\n{held}, 1, {len(model['vertices'][0])}\n"
                                "*STEP\n*FREQUENCY\n2\n*END STEP\n")
+
+
+class RefusalsTest(unittest.TestCase):
+    """What a deck cannot hold is told before anything is written."""
+
+    def refused(self, model, code, word, *flags):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "model.json").write_text(json.dumps(model))
+            run = subprocess.run([binary(), "mesh", "model.json", "-q", *flags], cwd=folder,
+                                 capture_output=True, text=True)
+            self.assertEqual(run.returncode, code, run.stderr)
+            self.assertIn(word, run.stderr.splitlines()[0])
+            self.assertEqual([file.name for file in folder.iterdir()], ["model.json"])
+
+    def test_wrong_usage_is_told(self):
+        deck = ("--cell", "cell.inp")
+        self.refused(ring(3), 2, ".inp", "--cell", "cell.vtu", "--material", "steel")
+        self.refused(ring(3), 2, "material=", *deck, "--analysis", "modal")
+        self.refused(ring(3), 2, "wood", *deck, "--material", "wood")
+        self.refused(prism(3), 2, "boundary_1", *deck, "--material", "steel", "--analysis", "modal",
+                     "--support", "rim")
+        self.refused(prism(3), 2, "region 2", *deck, "--material", "1=steel")
+        self.refused(prism(3), 2, "inp", "--cell", "cell.bdf", "--material", "steel", "--analysis",
+                     "modal")
+
+    def test_what_the_solver_cannot_do_is_told(self):
+        steel = ("--cell", "cell.inp", "--material", "steel")
+        self.refused(ring(3), 3, "plane elements", *steel, "--analysis", "modal")
+        self.refused(ring(3), 3, "plane=strain", *steel, "--analysis", "static", "--support", "1",
+                     "--load", "2=1")
+
+    def test_other_outputs_of_the_run_take_no_options(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "model.json").write_text(json.dumps(prism(3)))
+            subprocess.run([binary(), "mesh", "model.json", "-q", "--cell", "cell.inp", "--full",
+                            "full.vtu", "--material", "steel"], cwd=folder, check=True)
+            self.assertTrue((folder / "full.vtu").stat().st_size)
 
 
 if __name__ == "__main__":

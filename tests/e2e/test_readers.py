@@ -25,8 +25,10 @@ def importable(name):
 
 
 def measure(points, element):
-    """Area or volume of a simplex by its corners."""
+    """Length, area or volume of a simplex by its corners."""
     p = [points[i] for i in element]
+    if len(p) == 2:
+        return math.dist(*p)
     u, v = ([b - a for a, b in zip(p[0], q)] for q in p[1:3])
     cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
     if len(p) == 3:
@@ -89,6 +91,31 @@ class ReadersTest(unittest.TestCase):
                         nodes = {n for b in ours["boundary"] if b["marker"] == 2 for n in b["nodes"]}
                         self.assertEqual({self.number[i] for i in mesh.point_sets["boundary_2"]}, nodes)
 
+    def check_groups(self, ours, theirs):
+        """Lengths, areas and volumes by group, corners only."""
+        points = [p + [0.0] * (3 - ours["dimension"]) for p in ours["nodes"]]
+        d, expected, found = ours["dimension"], {}, {}
+        for facet in ours["boundary"]:
+            name = f"boundary_{facet['marker']}"
+            expected[name] = expected.get(name, 0) + measure(points, facet["nodes"][:d])
+        for element, region in zip(ours["elements"], ours["regions"]):
+            name = f"region_{region}"
+            expected[name] = expected.get(name, 0) + measure(points, element[:d + 1])
+        for side in ("lower", "higher"):
+            for facet in ours[side + "_facets"] if "sector" not in ours else []:
+                name = side + "_bound"
+                expected[name] = expected.get(name, 0) + measure(points, facet[:d])
+        names = {(int(dim), int(tag)): name for name, (tag, dim) in theirs.field_data.items()}
+        for block, tags in zip(theirs.cells, theirs.cell_data["gmsh:physical"]):
+            dimension = d if block.type in ("tetra", "tetra10") or d == 2 and block.type in (
+                "triangle", "triangle6") else d - 1
+            for row, tag in zip(block.data, tags):
+                name = names[dimension, int(tag)]
+                found[name] = found.get(name, 0) + measure(theirs.points, row[:dimension + 1])
+        self.assertEqual(sorted(found), sorted(expected))
+        for name, value in expected.items():
+            self.assertAlmostEqual(found[name] / value, 1, 9, name)
+
     @unittest.skipUnless(meshio, "meshio is not installed (Debian: python3-meshio)")
     def test_meshio_reads_msh_of_both_versions(self):
         for model in (prism(3), ring(3)):
@@ -100,6 +127,7 @@ class ReadersTest(unittest.TestCase):
                         tags = [tag for tag, _ in mesh.field_data.values()]
                         self.assertEqual(len(set(tags)), len(tags))
                         self.assertEqual(mesh.field_data["boundary_2"][0], 2)
+                        self.check_groups(ours, mesh)
 
     @unittest.skipUnless(shutil.which("gmsh"), "Gmsh is not installed (Debian: gmsh)")
     def test_gmsh_reads_msh2_and_bdf(self):
@@ -131,7 +159,7 @@ class ReadersTest(unittest.TestCase):
         code = """if True:
             import sys
             from netgen.read_gmsh import ReadGmsh
-            mesh = ReadGmsh(sys.argv[1][:-4])[0]
+            mesh = ReadGmsh(sys.argv[1][:-4])
             print("RESULT", len(mesh.Points()), len(mesh.Elements3D()),
                   *(mesh.GetBCName(i) for i in range(int(sys.argv[1][-5]))), mesh.GetMaterial(1),
                   mesh.GetMaterial(2))"""
