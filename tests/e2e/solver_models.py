@@ -49,6 +49,30 @@ def prism(n, axis_inside=False, place=lambda p: p):
     return {"type": "plc", "vertices": vertices, "facets": facets, "holes": [], "regions": regions}
 
 
+def interlocked(n):
+    """n pieces, each beneath the end of the one before, which it touches along a cylinder: the
+    shortest bound has nodes of one radius and height. Outer side 2, inner 1, bottom 3, top 4."""
+    pitch = 2 * math.pi / n
+    outer = ((2.0, 0.5), (2.0, 0.79), (2.0, 1.08), (1.5, 1.08), (1.5, 1.29))
+    inner = ((1.0, 0.0), (1.0, 0.3), (1.0, 0.6), (1.0, 0.9), (1.5, 0.9), (1.5, 1.0))
+    vertices, facets, loops = [], [], {}
+    for name, corners in (("outer", outer), ("inner", inner)):
+        for z in (0.0, 0.3):
+            first = len(vertices)
+            vertices += [[r * math.cos((t + k) * pitch), r * math.sin((t + k) * pitch), z]
+                         for k in range(n) for r, t in corners]
+            loops[name, z] = list(range(first, len(vertices)))
+    for name, marker in (("outer", 2), ("inner", 1)):
+        low, high = loops[name, 0.0], loops[name, 0.3]
+        for i in range(len(low)):
+            j = (i + 1) % len(low)
+            facets.append({"polygons": [[low[i], low[j], high[j], high[i]]], "marker": marker})
+    for z, marker in ((0.0, 3), (0.3, 4)):
+        facets.append({"polygons": [loops["outer", z], loops["inner", z]], "holes": [[0, 0, z]],
+                       "marker": marker})
+    return {"type": "plc", "vertices": vertices, "facets": facets, "holes": [], "regions": []}
+
+
 def tilted(point):
     """A rigid motion that leaves no axis of the model along one of space, off the origin."""
     x, y, z = point

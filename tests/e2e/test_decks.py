@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 import unittest
 
-from solver_models import prism, ring, tilted
+from solver_models import interlocked, prism, ring, tilted
 from symcell_server import binary
 
 # CalculiX prints seven digits.
@@ -121,6 +121,15 @@ class CalculixTest(unittest.TestCase):
                          "--support", "boundary_1")
         self.check_modes(5, True, 1, prism(5, True, place=tilted), "--material", "steel_si",
                          "--support", "3")
+
+    def test_nodes_of_one_radius_and_height_are_tied_apart(self):
+        for order in (1, 2):
+            model = interlocked(5)
+            flags = ["--material", "steel", "--support", "1", "--max-edge", "0.3"]
+            self.check_modes(5, False, order, model, *flags)
+            cell = (self.folder / "cell.inp").read_text()
+            self.assertGreater(cell.count("*CYCLIC SYMMETRY MODEL"), 1)
+            self.check_statics(model, "--order", str(order), *flags[2:], "--load", "2=1")
 
     def static_displacements(self, deck):
         deck = deck.replace("*NODE FILE\nU\n", "*NODE PRINT, NSET=NALL\nU\n")
