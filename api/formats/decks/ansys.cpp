@@ -158,6 +158,7 @@ void write_bounds(const SymmetryCellMesh& cell, const DeckPlan& plan, ByteWriter
   for (const bool low : {true, false}) {
     write_component(out, low ? "CYCLIC_M01L" : "CYCLIC_M01H", "NODE", [&](const auto& put_id) {
       std::vector<std::int64_t> ids;
+      ids.reserve(pairs.size());
       for (const auto& pair : pairs) ids.push_back(low ? pair.first : pair.second);
       std::ranges::sort(ids);
       for (const std::int64_t id : ids) put_id(id);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <string>
 
 #include "api/formats/decks/deck_numbers.hpp"
@@ -31,6 +32,10 @@ std::size_t at(std::int32_t i) {
 
 std::string number(double value) {
   return fitting_number(value, kFieldBytes);
+}
+
+void put(ByteWriter& out, std::initializer_list<std::string_view> pieces) {
+  for (const std::string_view piece : pieces) out.text(piece);
 }
 
 // Entries of a set, several a line.
@@ -287,8 +292,8 @@ void InpDeck::write_ties(ByteWriter& out) const {
         out.character('\n');
       }
     }
-    out.text("*TIE, CYCLIC SYMMETRY, NAME=TIE" + ending + ", POSITION TOLERANCE=" + tolerance +
-             "\nLOWER" + ending + ", HIGHER" + ending + "\n");
+    put(out, {"*TIE, CYCLIC SYMMETRY, NAME=TIE", ending, ", POSITION TOLERANCE=", tolerance,
+              "\nLOWER", ending, ", HIGHER", ending, "\n"});
   }
   const Point3& o = cell.axis_origin;
   const Point3 end = o + cell.axis_direction;
@@ -339,10 +344,10 @@ void InpDeck::write_axis_equations(ByteWriter& out) const {
       const std::string direction = std::to_string(i + 1);
       const double share = axis[i] / axis[along];
       if (std::abs(share) < 1e-15) {
-        out.text("*BOUNDARY\n" + id + ", " + direction + ", " + direction + "\n");
+        put(out, {"*BOUNDARY\n", id, ", ", direction, ", ", direction, "\n"});
       } else {
-        out.text("*EQUATION\n2\n" + id + ", " + direction + ", 1., " + id + ", " +
-                 std::to_string(along + 1) + ", " + number(-share) + "\n");
+        put(out, {"*EQUATION\n2\n", id, ", ", direction, ", 1., ", id, ", ",
+                  std::to_string(along + 1), ", ", number(-share), "\n"});
       }
     }
   }
