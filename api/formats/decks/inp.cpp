@@ -16,8 +16,12 @@ namespace {
 constexpr std::size_t kFieldBytes = 20;
 // Of a set's name CalculiX and Abaqus read 80 bytes; "_support" is put behind some.
 constexpr std::size_t kLongestName = 64;
+// Position tolerances that nodes of one tie are apart at least: none is in reach of another's image.
+constexpr double kApart = 4;
 // Ties with cyclic symmetry that CalculiX takes.
 constexpr std::size_t kMostTies = 99;
+// Entries of rotations and of unit vectors below this are what rounding leaves of 0.
+constexpr double kRoundingOfZero = 1e-15;
 constexpr int kEntriesPerLine = 10;         // of a set; 16 are allowed
 constexpr std::int64_t kModes = 10;         // of a nodal diameter
 constexpr std::int64_t kFullModes = 20;     // of a full mesh, where most come in pairs
@@ -108,7 +112,7 @@ Result<void> InpDeck::choose_ties() {
                 {bounds.beyond_pairs});
   }
   // Nodes on the axis that are held need no tie, and may have none.
-  ties_ = distinct_groups(mesh_->cell(), bounds, plan_.held, 4 * plan_.position_tolerance);
+  ties_ = distinct_groups(mesh_->cell(), bounds, plan_.held, kApart * plan_.position_tolerance);
   tied_axis_ = std::ranges::any_of(bounds.axis,
                                    [&](std::int32_t node) { return plan_.held[at(node)] == 0; });
   if (ties_.size() <= kMostTies) return {};
@@ -317,7 +321,7 @@ void InpDeck::write_equations(ByteWriter& out) const {
           std::to_string(copy.dependent + 1) + ", " + std::to_string(i + 1) + ", 1.";
       int count = 1;
       for (std::size_t j = 0; j < d; ++j) {
-        if (std::abs(rotation[i][j]) < 1e-15) continue;  // rounding of the table of rotations
+        if (std::abs(rotation[i][j]) < kRoundingOfZero) continue;
         terms += ", " + std::to_string(copy.independent + 1) + ", " + std::to_string(j + 1) + ", " +
                  number(-rotation[i][j]);
         ++count;
@@ -343,7 +347,7 @@ void InpDeck::write_axis_equations(ByteWriter& out) const {
       if (i == along) continue;
       const std::string direction = std::to_string(i + 1);
       const double share = axis[i] / axis[along];
-      if (std::abs(share) < 1e-15) {
+      if (std::abs(share) < kRoundingOfZero) {
         put(out, {"*BOUNDARY\n", id, ", ", direction, ", ", direction, "\n"});
       } else {
         put(out, {"*EQUATION\n2\n", id, ", ", direction, ", 1., ", id, ", ",
