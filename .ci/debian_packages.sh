@@ -11,7 +11,7 @@ build_packages=(
   libgtest-dev
 )
 # What tests run.
-test_packages=(curl gmsh python3 python3-numpy python3-scipy python3-yaml)
+test_packages=(calculix-ccx curl gmsh python3 python3-meshio python3-numpy python3-scipy python3-yaml)
 # What the checks of .ci/run use beyond that.
 check_packages=(clang-format-14 clang-tidy-14)
 # What .ci/nightly uses: clang with libFuzzer.

@@ -17,10 +17,15 @@ struct FormatName {
 };
 
 // In the order of preference where a client accepts several alike.
-constexpr std::array<FormatName, 5> kFormats{{
+constexpr std::array<FormatName, 10> kFormats{{
     {MeshFormat::kVtu, "vtu", "application/vnd.vtk.vtu+xml", 0},
     {MeshFormat::kJson, "json", "application/json", 0},
     {MeshFormat::kMsh, "msh", "model/x-gmsh", 0},
+    {MeshFormat::kMsh2, "msh2", "model/x-gmsh", 0},
+    {MeshFormat::kInp, "inp", "model/x-abaqus", 0},
+    {MeshFormat::kBdf, "bdf", "model/x-nastran", 0},
+    {MeshFormat::kCdb, "cdb", "model/x-ansys", 0},
+    {MeshFormat::kVtp, "vtp", "application/vnd.vtk.vtp+xml", 0},
     {MeshFormat::kSvg, "svg", "image/svg+xml", 2},
     {MeshFormat::kStl, "stl", "model/stl", 3},
 }};
@@ -74,6 +79,15 @@ int closeness(const std::string& range, std::string_view type) {
 }
 
 }  // namespace
+
+std::string mesh_format_list() {
+  std::string list;
+  for (const FormatName& format : kFormats) {
+    if (!list.empty()) list += format.format == kFormats.back().format ? " or " : ", ";
+    list += format.name;
+  }
+  return list;
+}
 
 std::optional<MeshFormat> mesh_format_from_name(std::string_view name) {
   if (name.starts_with('.')) name.remove_prefix(1);

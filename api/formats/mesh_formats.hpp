@@ -16,6 +16,13 @@ void write_vtu(MeshStream& mesh, VtuEncoding encoding, ByteWriter& out);
 // bound, and $Periodic from the lower to the higher bound.
 void write_msh(MeshStream& mesh, ByteWriter& out);
 
+// Gmsh 2.2 ASCII: the same groups as elements with tags; no $Periodic.
+void write_msh2(MeshStream& mesh, ByteWriter& out);
+
+// VTK XML PolyData: the facets of the model and, of a cell, of both bounds, with `marker` and `side`
+// (0 outside, 1 lower bound, 2 higher bound, 3 within the material).  Errors: kInternal.
+[[nodiscard]] Result<void> write_vtp(MeshStream& mesh, VtuEncoding encoding, ByteWriter& out);
+
 // A picture of a planar mesh: edges thin, model segments dark, lower bound red, higher bound blue;
 // the full mesh as rotated copies of the cell, which is picked out in colour.
 void write_svg(const MeshStream& mesh, ByteWriter& out);

@@ -59,6 +59,26 @@ void write_bounds(MeshStream& mesh, ByteWriter& out) {
   }
 }
 
+// Facets of the bounds as lists of nodes, pairwise, in the ids of sector 0.
+void write_bound_facets(MeshStream& mesh, ByteWriter& out) {
+  const SymmetryCellMesh& cell = mesh.cell();
+  const auto table = mesh.node_table(0);
+  for (const bool lower : {true, false}) {
+    out.text(lower ? ",\n\"lower_facets\":[" : ",\n\"higher_facets\":[");
+    const auto& facets = lower ? cell.lower_facets : cell.higher_facets;
+    Commas commas(out);
+    std::vector<std::int64_t> ids(mesh.nodes_per_facet());
+    for (std::size_t i = 0; i < facets.size(); i += ids.size()) {
+      for (std::size_t c = 0; c < ids.size(); ++c) {
+        ids[c] = table[static_cast<std::size_t>(facets[i + c])];
+      }
+      commas.next();
+      write_ids(out, std::span<const std::int64_t>(ids));
+    }
+    out.character(']');
+  }
+}
+
 void write_head(const SymmetryCellMesh& cell, ByteWriter& out) {
   out.text("{\"dimension\":");
   out.integer(cell.dimension);
@@ -131,6 +151,7 @@ void write_json_mesh(MeshStream& mesh, ByteWriter& out) {
   });
   out.character(']');
   write_bounds(mesh, out);
+  write_bound_facets(mesh, out);
   if (mesh.full()) {
     write_per_element(mesh, "sector", out, [](std::size_t, std::int32_t s) { return s; });
     write_per_element(mesh, "cell_element", out, [](std::size_t e, std::int32_t) { return e; });

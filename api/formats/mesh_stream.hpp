@@ -52,6 +52,10 @@ class MeshStream {
   template <class F>
   void each_facet(F f);
 
+  // f(std::span<const std::int64_t> nodes, std::size_t cell_facet, std::int32_t sector): the same ones
+  template <class F>
+  void each_facet_index(F f);
+
   // Asked before each sector: true ends all loops (the receiver is gone).
   void stop_when(std::function<bool()> stopped) { stopped_ = std::move(stopped); }
 
@@ -126,6 +130,13 @@ void MeshStream::each_element_index(F f) const {
 
 template <class F>
 void MeshStream::each_facet(F f) {
+  each_facet_index([&](std::span<const std::int64_t> nodes, std::size_t b, std::int32_t s) {
+    f(nodes, cell_->boundary_marker(b, s));
+  });
+}
+
+template <class F>
+void MeshStream::each_facet_index(F f) {
   const std::size_t corners = nodes_per_facet();
   std::array<std::int64_t, kMostNodes> ids{};
   for (std::int32_t s = 0; s < sectors() && !stopped_(); ++s) {
@@ -135,7 +146,7 @@ void MeshStream::each_facet(F f) {
       for (std::size_t i = 0; i < corners; ++i) {
         ids[i] = table[static_cast<std::size_t>(cell_->boundary[b * corners + i])];
       }
-      f(std::span<const std::int64_t>(ids.data(), corners), cell_->boundary_marker(b, s));
+      f(std::span<const std::int64_t>(ids.data(), corners), b, s);
     }
   }
 }

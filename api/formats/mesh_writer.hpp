@@ -4,15 +4,28 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
+#include "api/formats/decks/deck_options.hpp"
 #include "api/sink.hpp"
 #include "core/base/error.hpp"
 #include "core/cell/symmetry_cell_mesh.hpp"
 
 namespace symcell {
 
-enum class MeshFormat : std::uint8_t { kJson, kVtu, kMsh, kSvg, kStl };
+enum class MeshFormat : std::uint8_t {
+  kJson,
+  kVtu,
+  kMsh,
+  kMsh2,
+  kInp,
+  kBdf,
+  kCdb,
+  kVtp,
+  kSvg,
+  kStl
+};
 enum class MeshPart : std::uint8_t { kCell, kFull };
 
 enum class VtuEncoding : std::uint8_t { kAppendedRaw, kAppendedZlib, kAscii };
@@ -20,9 +33,13 @@ enum class VtuEncoding : std::uint8_t { kAppendedRaw, kAppendedZlib, kAscii };
 struct WriteOptions {
   VtuEncoding vtu_encoding = VtuEncoding::kAppendedRaw;
   bool stl_ascii = false;
+  DeckOptions deck = {};
 };
 
-// "json", "vtu", "msh", "svg", "stl", with or without a leading dot; any case.
+// "vtu, json, msh, ... or stl", for messages.
+[[nodiscard]] std::string mesh_format_list();
+
+// A name of that list, with or without a leading dot; any case.
 [[nodiscard]] std::optional<MeshFormat> mesh_format_from_name(std::string_view name);
 [[nodiscard]] std::string_view mesh_format_name(MeshFormat format);  // "vtu"
 [[nodiscard]] std::string_view mesh_format_media_type(MeshFormat format);
@@ -33,7 +50,21 @@ struct WriteOptions {
 // Pictures are of planar meshes, STL of solids.  Errors: kUnsupportedModel.
 [[nodiscard]] Result<void> check_mesh_format(MeshFormat format, std::int32_t dimension);
 
-// Errors: kUnsupportedModel as above; kTooLarge (STL); kWriteFailed if the sink stops.
+// A deck for a solver, which may have materials and more.
+[[nodiscard]] bool takes_deck_options(MeshFormat format);
+// Errors: kBadOption (deck options that the format does not take).
+[[nodiscard]] Result<void> check_write_options(MeshFormat format, const WriteOptions& options);
+
+// Whether write_mesh would begin, so that what cannot be written is told before the answer begins.
+// Cost: as a small part of writing, whatever the fold.
+// Errors: kBadOption (as above; groups, regions and materials of decks that do not fit the mesh);
+// kUnsupportedModel (a format of the other dimension; what a solver cannot express).
+[[nodiscard]] Result<void> check_mesh_output(const SymmetryCellMesh& cell,
+                                             MeshPart part,
+                                             MeshFormat format,
+                                             const WriteOptions& options);
+
+// Errors: as check_mesh_output; kTooLarge (STL); kWriteFailed if the sink stops.
 [[nodiscard]] Result<void> write_mesh(const SymmetryCellMesh& cell,
                                       MeshPart part,
                                       MeshFormat format,

@@ -26,13 +26,14 @@ namespace {
 
 constexpr const char* kExamples =
     R"(Formats, from the ending or --format: vtu (ParaView), json, msh (Gmsh 4.1 with the periodic
-bounds), svg (a picture, planar models), stl (the boundary, solids). Lengths, areas and volumes are
-in the model's own units, angles in degrees.
+bounds), msh2 (Gmsh 2.2), decks: inp (CalculiX, Abaqus), bdf (Nastran), cdb (ANSYS); vtp (the
+boundary with its groups), svg (a picture, planar models), stl (the boundary, solids). Lengths, areas and volumes are in the model's own units, angles in degrees.
 
 Examples:
   symcell mesh gear.json --cell cell.vtu --full full.vtu --stats stats.json
   symcell mesh gear.poly --fold 17 --min-angle 33 --max-area 0.1 --cell cell.msh
   symcell mesh part.stl --fold 8 --max-volume 2 --cell cell.vtu --full full.vtu
+  symcell mesh flange.json --cell cell.inp --analysis modal --material steel --support bore
   symcell mesh nut.json --axis-origin 0,0,0 --axis-direction 0,0,1 --cell cell.vtu
   cat flange.json | symcell mesh - --max-edge 2 --full - --format json | jq .fold
 
@@ -47,6 +48,7 @@ struct MeshArguments {
   std::string stats;
   std::string format;
   std::string encoding = "raw";
+  std::vector<std::pair<std::string, std::string>> deck;
   bool json_errors = false;
   bool quiet = false;
   OptionFlags flags;
@@ -65,11 +67,15 @@ Result<MeshFormat> output_format(const std::string& path, const std::string& for
   if (const std::optional<MeshFormat> found = mesh_format_from_name(name)) return *found;
   const std::string whose = format.empty() ? "the ending of " + path : "--format " + format;
   return fail(ErrorCode::kBadOption,
-              whose + " names no format for meshes; take vtu, json, msh, svg or stl");
+              whose + " names no format for meshes; take " + mesh_format_list());
 }
 
-Result<WriteOptions> write_options(const std::string& encoding) {
+Result<WriteOptions> write_options(const MeshArguments& arguments) {
   WriteOptions options;
+  for (const auto& [name, value] : arguments.deck) {
+    SYMCELL_TRY(set_deck_option(options.deck, name, value));
+  }
+  const std::string& encoding = arguments.encoding;
   if (encoding == "zlib") options.vtu_encoding = VtuEncoding::kAppendedZlib;
   if (encoding == "ascii") {
     options.vtu_encoding = VtuEncoding::kAscii;
@@ -141,7 +147,7 @@ class MeshRun {
     const Result<MeshOptions> options = arguments_.flags.options();
     if (!options) return error_of(options);
     options_ = *options;
-    const Result<WriteOptions> writing = write_options(arguments_.encoding);
+    const Result<WriteOptions> writing = write_options(arguments_);
     if (!writing) return error_of(writing);
     write_options_ = *writing;
     const std::array paths{arguments_.cell, arguments_.full, arguments_.stats};
@@ -157,6 +163,16 @@ class MeshRun {
       if (!file) return error_of(file);
       meshes_.push_back({part, *format, std::move(*file)});
     }
+    const bool deck = std::ranges::any_of(
+        meshes_, [](const MeshOutput& output) { return takes_deck_options(output.format); });
+    if (!deck && !arguments_.deck.empty()) {
+      return fail(ErrorCode::kBadOption,
+                  "--" + arguments_.deck.front().first +
+                      " is for a deck: give --cell or --full as .inp, .bdf or .cdb");
+    }
+    for (const MeshOutput& output : meshes_) {
+      SYMCELL_TRY(check_write_options(output.format, options_of(output.format)));
+    }
     // With no output asked for, the figures are what one wants to see.
     const bool nothing = meshes_.empty() && arguments_.stats.empty();
     if (!nothing && arguments_.stats.empty()) return {};
@@ -164,6 +180,13 @@ class MeshRun {
     if (!file) return error_of(file);
     statistics_.emplace(std::move(*file));
     return {};
+  }
+
+  // What of the command line is for this format.
+  [[nodiscard]] WriteOptions options_of(MeshFormat format) const {
+    WriteOptions options = write_options_;
+    if (!takes_deck_options(format)) options.deck = {};
+    return options;
   }
 
   Result<MeshOutcome> mesh() {
@@ -183,7 +206,12 @@ class MeshRun {
       if (!fits) return fail(ErrorCode::kBadOption, fits.error().message);
     }
     Result<MeshOutcome> outcome = mesh_model(*model, options_, *context_);
-    if (outcome) outcome->statistics.timings_ms.parse = parse_ms;
+    if (!outcome) return outcome;
+    outcome->statistics.timings_ms.parse = parse_ms;
+    for (const MeshOutput& output : meshes_) {
+      SYMCELL_TRY(
+          check_mesh_output(outcome->mesh, output.part, output.format, options_of(output.format)));
+    }
     return outcome;
   }
 
@@ -196,7 +224,8 @@ class MeshRun {
       const Sink sink = [&](std::string_view piece) {
         return !context_->cancelled() && file(piece);
       };
-      auto written = write_mesh(outcome.mesh, output.part, output.format, write_options_, sink);
+      auto written =
+          write_mesh(outcome.mesh, output.part, output.format, options_of(output.format), sink);
       if (!written) return written;
       (output.part == MeshPart::kFull ? timings.restore : timings.write) += watch.lap();
     }
@@ -235,17 +264,33 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
   command->add_option("MODEL", arguments->model, "the model, planar or solid; - : standard input")
       ->required()
       ->option_text(" ");
-  const auto add = [&](const char* name, std::string& target, const char* help, const char* value) {
+  const auto add = [&](const char* name, std::string& target, const std::string& help,
+                       const char* value) {
     command->add_option(name, target, help)->type_name(value)->group("Output");
   };
   add("--cell", arguments->cell, "the symmetry cell; - : standard output", "FILE");
   add("--full", arguments->full, "the full mesh, all n sectors", "FILE");
   add("--stats", arguments->stats, "the statistics, JSON; the default if no output is named",
       "FILE");
-  add("--format", arguments->format, "of both meshes, whatever the endings",
-      "vtu|json|msh|svg|stl");
-  add("--encoding,--vtu-encoding", arguments->encoding, "of VTU files [raw]; of STL ascii or not",
-      "raw|zlib|ascii");
+  add("--format", arguments->format, "of both meshes, whatever the endings: " + mesh_format_list(),
+      "NAME");
+  add("--encoding,--vtu-encoding", arguments->encoding,
+      "of VTU and VTP files [raw]; of STL ascii or not", "raw|zlib|ascii");
+  for (const DeckOptionInfo& info : deck_option_table()) {
+    const std::string name(info.name);
+    std::string help(info.help);
+    if (!info.standard.empty()) help += " [" + std::string(info.standard) + "]";
+    command
+        ->add_option_function<std::string>(
+            "--" + name,
+            [deck = &arguments->deck, name](const std::string& value) {
+              deck->emplace_back(name, value);
+            },
+            help)
+        ->type_name(std::string(info.metavar))
+        ->multi_option_policy(CLI::MultiOptionPolicy::Throw)
+        ->group("Decks");
+  }
   arguments->flags.add_to(*command);
   command->add_flag("--json-errors", arguments->json_errors,
                     "errors as problem documents, warnings as JSON, on standard error");

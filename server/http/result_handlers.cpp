@@ -8,6 +8,7 @@
 #include "api/formats/mesh_writer.hpp"
 #include "api/version.hpp"
 #include "server/base/files.hpp"
+#include "server/base/identifiers.hpp"
 #include "server/http/call.hpp"
 #include "server/http/gzip.hpp"
 #include "server/http/header_values.hpp"
@@ -121,8 +122,7 @@ std::optional<MeshFormat> mesh_format_of(Call& call, std::int32_t dimension) {
   if (call.request.has_param("format")) {
     const auto format = mesh_format_from_name(call.parameter("format"));
     if (!format) {
-      respond_problem(call, ServiceProblem::kBadRequest,
-                      "format is one of vtu, json, msh, svg, stl");
+      respond_problem(call, ServiceProblem::kBadRequest, "format is one of " + mesh_format_list());
       return std::nullopt;
     }
     const auto fits = check_mesh_format(*format, dimension);
@@ -136,19 +136,53 @@ std::optional<MeshFormat> mesh_format_of(Call& call, std::int32_t dimension) {
   if (!format) {
     respond_problem(call, ServiceProblem::kNotAcceptable,
                     "meshes come as application/vnd.vtk.vtu+xml, application/json, model/x-gmsh, "
-                    "planar ones as image/svg+xml, solids as model/stl; or choose by ?format=");
+                    "planar ones as image/svg+xml, solids as model/stl; or choose by ?format=" +
+                        mesh_format_list());
   }
   return format;
 }
 
 std::optional<WriteOptions> write_options_of(Call& call) {
+  WriteOptions options;
   const std::string encoding = call.parameter("encoding");
-  if (encoding.empty() || encoding == "raw") return WriteOptions{VtuEncoding::kAppendedRaw};
-  if (encoding == "zlib") return WriteOptions{VtuEncoding::kAppendedZlib};
-  if (encoding == "ascii") return WriteOptions{VtuEncoding::kAscii, true};
-  respond_problem(call, ServiceProblem::kBadRequest,
-                  "encoding (of vtu; ascii also of stl) is one of raw, zlib, ascii");
-  return std::nullopt;
+  if (encoding == "zlib") options.vtu_encoding = VtuEncoding::kAppendedZlib;
+  if (encoding == "ascii") {
+    options.vtu_encoding = VtuEncoding::kAscii;
+    options.stl_ascii = true;
+  }
+  if (!encoding.empty() && encoding != "raw" && encoding != "zlib" && encoding != "ascii") {
+    respond_problem(call, ServiceProblem::kBadRequest,
+                    "encoding (of vtu and vtp; ascii also of stl) is one of raw, zlib, ascii");
+    return std::nullopt;
+  }
+  for (const DeckOptionInfo& info : deck_option_table()) {
+    const std::string name(info.name);
+    if (!call.request.has_param(name.c_str())) continue;
+    const auto set = set_deck_option(options.deck, name, call.parameter(name.c_str()));
+    if (!set) {
+      respond_error(call, set.error(), "");
+      return std::nullopt;
+    }
+  }
+  return options;
+}
+
+// Tells representations of one format apart: how it is encoded, what a deck holds.
+std::string variant_of(Call& call, MeshFormat format) {
+  if (format == MeshFormat::kVtu || format == MeshFormat::kVtp || format == MeshFormat::kStl) {
+    return call.parameter("encoding");
+  }
+  std::string texts;
+  for (const DeckOptionInfo& info : deck_option_table()) {
+    const std::string name(info.name);
+    if (call.request.has_param(name.c_str())) {
+      texts += name + "=" + call.parameter(name.c_str()) + "\n";
+    }
+  }
+  if (texts.empty()) return "";
+  Sha256 digest;
+  digest.append(texts);
+  return "-" + digest.finish();
 }
 
 // Errors of the archive are ours: throws.
@@ -177,20 +211,26 @@ void send_mesh(Call& call, ServiceContext& context, MeshPart part) {
   if (!options) return;
   const std::string part_name = part == MeshPart::kCell ? "cell" : "full";
   const std::string format_name(mesh_format_name(*format));
-  const bool encoded = *format == MeshFormat::kVtu || *format == MeshFormat::kStl;
-  const std::string encoding = encoded ? call.parameter("encoding") : "";
+  const bool head = call.request.method == "HEAD";
+  std::shared_ptr<const SymmetryCellMesh> cell;
+  if (!head || takes_deck_options(*format)) cell = load_cell(*job, context.jobs.files());
+  const auto fits = cell ? check_mesh_output(*cell, part, *format, *options)
+                         : check_write_options(*format, *options);
+  if (!fits) {
+    respond_error(call, fits.error(), "");
+    return;
+  }
 
   Representation mesh;
   mesh.media_type = mesh_format_media_type(*format);
   mesh.file_name = part_name + "." + format_name;
   // The bytes follow from the job, the form and the program's version.
-  mesh.etag_base =
-      job->id + "-" + part_name + "-" + format_name + encoding + "-" + std::string(version());
-  if (call.request.method == "HEAD") {
+  mesh.etag_base = job->id + "-" + part_name + "-" + format_name + variant_of(call, *format) + "-" +
+                   std::string(version());
+  if (head) {
     mesh.produce = [](const PieceSink&) { return true; };
   } else {
-    mesh.produce = [cell = load_cell(*job, context.jobs.files()), part, format = *format,
-                    options = *options](const PieceSink& sink) {
+    mesh.produce = [cell, part, format = *format, options = *options](const PieceSink& sink) {
       return write_mesh(*cell, part, format, options, sink).has_value();
     };
   }

@@ -2,6 +2,7 @@
 // quarter turns about its centre.
 #include <gtest/gtest.h>
 
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 
 #include "api/problem.hpp"
@@ -46,6 +47,10 @@ TEST(Golden, Msh) {
   expect_golden("square_cell.msh", written(test::square_cell(), MeshPart::kCell, MeshFormat::kMsh));
 }
 
+TEST(Golden, Msh2) {
+  expect_golden("quarter_cell.msh2", written(quarter(), MeshPart::kCell, MeshFormat::kMsh2));
+}
+
 SymmetryCellMesh prism() {
   test::Extrusion how;
   how.layers = 1;
@@ -64,6 +69,40 @@ TEST(Golden, Solids) {
                 written(elevate_to_quadratic(prism()), MeshPart::kCell, MeshFormat::kMsh));
   expect_golden("prism_cell.stl", written(prism(), MeshPart::kCell, MeshFormat::kStl, ascii));
   expect_golden("prism_full.stl", written(prism(), MeshPart::kFull, MeshFormat::kStl, ascii));
+}
+
+WriteOptions deck(std::initializer_list<std::pair<const char*, const char*>> texts) {
+  WriteOptions options;
+  for (const auto& [name, text] : texts) {
+    EXPECT_TRUE(set_deck_option(options.deck, name, text)) << name;
+  }
+  return options;
+}
+
+TEST(Golden, Decks) {
+  const WriteOptions modal = deck({{"analysis", "modal"}, {"material", "steel"}});
+  const WriteOptions loaded = deck({{"analysis", "static"},
+                                    {"material", "7=steel_si"},
+                                    {"support", "11"},
+                                    {"load", "boundary_12=2.5"}});
+  expect_golden("prism_cell_modal.inp", written(prism(), MeshPart::kCell, MeshFormat::kInp, modal));
+  expect_golden("prism_cell_static.inp",
+                written(prism(), MeshPart::kCell, MeshFormat::kInp, loaded));
+  expect_golden("prism_full_static.inp",
+                written(prism(), MeshPart::kFull, MeshFormat::kInp, loaded));
+  expect_golden("quarter_cell_order2.inp",
+                written(elevate_to_quadratic(quarter()), MeshPart::kCell, MeshFormat::kInp));
+  const WriteOptions made_of = deck({{"material", "titanium"}});
+  expect_golden("prism_cell.bdf", written(prism(), MeshPart::kCell, MeshFormat::kBdf, made_of));
+  expect_golden("prism_cell_order2.cdb",
+                written(elevate_to_quadratic(prism()), MeshPart::kCell, MeshFormat::kCdb, made_of));
+}
+
+TEST(Golden, Boundary) {
+  const WriteOptions ascii{VtuEncoding::kAscii};
+  expect_golden("prism_cell.vtp", written(prism(), MeshPart::kCell, MeshFormat::kVtp, ascii));
+  expect_golden("quarter_cell_order2.vtp",
+                written(elevate_to_quadratic(quarter()), MeshPart::kCell, MeshFormat::kVtp, ascii));
 }
 
 TEST(Golden, Svg) {

@@ -52,6 +52,23 @@ TEST_F(ResultsHttpTest, VtuEncodingsAreChosenByTheQuery) {
   problem_of(client().Get(path_ + "/cell?encoding=rot13"), 400);
 }
 
+TEST_F(ResultsHttpTest, DecksTakeTheirOptionsFromTheQuery) {
+  const auto plain = client().Get(path_ + "/full?format=inp");
+  const auto modal = client().Get(path_ + "/full?format=inp&analysis=modal&material=steel");
+  ASSERT_TRUE(plain && modal);
+  EXPECT_EQ(plain->status, 200);
+  EXPECT_EQ(plain->get_header_value("Content-Type"), "model/x-abaqus");
+  EXPECT_EQ(modal->status, 200) << modal->body;
+  EXPECT_NE(modal->body.find("*FREQUENCY"), std::string::npos);
+  EXPECT_NE(plain->get_header_value("ETag"), modal->get_header_value("ETag"));
+  // Before a byte is sent.
+  problem_of(client().Get(path_ + "/full?format=inp&analysis=modal"), 400);
+  problem_of(client().Get(path_ + "/full?format=inp&material=wood"), 400);
+  problem_of(client().Get(path_ + "/full?format=vtu&material=steel"), 400);
+  problem_of(client().Get(path_ + "/cell?format=inp&analysis=modal&material=steel"), 422);
+  EXPECT_EQ(client().Head(path_ + "/cell?format=inp&analysis=modal&material=steel")->status, 422);
+}
+
 TEST_F(ResultsHttpTest, WhatIsNotOfferedIsRefused) {
   problem_of(client().Get(path_ + "/cell?format=dxf"), 400);
   problem_of(client().Get(path_ + "/cell", {{"Accept", "image/png"}}), 406);

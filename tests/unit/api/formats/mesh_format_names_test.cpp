@@ -9,10 +9,12 @@ TEST(MeshFormatNames, NamesAndEndings) {
   EXPECT_EQ(mesh_format_from_name("vtu"), MeshFormat::kVtu);
   EXPECT_EQ(mesh_format_from_name(".MSH"), MeshFormat::kMsh);
   EXPECT_EQ(mesh_format_from_name(".STL"), MeshFormat::kStl);
-  EXPECT_FALSE(mesh_format_from_name("inp"));
+  EXPECT_EQ(mesh_format_from_name("INP"), MeshFormat::kInp);
+  EXPECT_FALSE(mesh_format_from_name("dxf"));
   EXPECT_FALSE(mesh_format_from_name(""));
-  for (const MeshFormat format : {MeshFormat::kJson, MeshFormat::kVtu, MeshFormat::kMsh,
-                                  MeshFormat::kSvg, MeshFormat::kStl}) {
+  for (const MeshFormat format :
+       {MeshFormat::kJson, MeshFormat::kVtu, MeshFormat::kMsh, MeshFormat::kInp, MeshFormat::kBdf,
+        MeshFormat::kCdb, MeshFormat::kVtp, MeshFormat::kSvg, MeshFormat::kStl}) {
     EXPECT_EQ(mesh_format_from_name(mesh_format_name(format)), format);
     const std::int32_t dimension = format == MeshFormat::kStl ? 3 : 2;
     EXPECT_EQ(mesh_format_from_accept(mesh_format_media_type(format), dimension), format);
