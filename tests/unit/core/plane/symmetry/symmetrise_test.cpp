@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -279,6 +280,37 @@ TEST(Symmetrise, CancelIsHeeded) {
   const auto result = symmetrise(regular_ring(6, 2, 1), {}, context);
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, ErrorCode::kCancelled);
+}
+
+// A gear of 12 waves that 221 points sample: all sectors differ, and none stands for the others within a
+// tolerance little above the sagitta. Each then gets the vertices of all, which is told.
+TEST(Symmetrise, TellsWhereSectorsGotTheVerticesOfAll) {
+  constexpr int kPoints = 221;
+  Pslg pslg;
+  for (int i = 0; i < kPoints; ++i) {
+    const double t = 4.9020231593 + 2 * std::numbers::pi * i / kPoints;
+    const double r = 1 + 0.0610624188 * std::sin(12 * t + 1) + 0.0183187256 * std::sin(24 * t + 1);
+    pslg.vertices.push_back({r * std::cos(t), r * std::sin(t)});
+    pslg.segments.push_back({i, (i + 1) % kPoints, 0});
+  }
+  MeshOptions options;
+  options.symmetry_tolerance_rel = 0.00111;
+  const auto tells = [](const SymmetricPslg& found) {
+    return std::any_of(found.warnings.begin(), found.warnings.end(),
+                       [](const Warning& w) { return w.code == WarningCode::kVerticesCopied; });
+  };
+  const auto found = run(pslg, options);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->fold, 12);
+  EXPECT_GT(found->copied_vertices, 0U);
+  EXPECT_TRUE(tells(*found));
+  options.keep_vertices = true;
+  const auto asked_for = run(pslg, options);
+  ASSERT_TRUE(asked_for) << asked_for.error().message;
+  EXPECT_FALSE(tells(*asked_for));
+  options = {};
+  options.symmetry_tolerance_rel = 0.003;
+  EXPECT_FALSE(tells(*run(pslg, options)));
 }
 
 }  // namespace
