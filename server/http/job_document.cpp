@@ -41,7 +41,7 @@ Json options_of(const Job& job) {
 Json statistics_of(const Job& job, const JobService& jobs) {
   const auto path = jobs.files().statistics(job.id);
   if (!std::filesystem::exists(path)) return nullptr;
-  return Json::parse(MappedFile(path).bytes(), nullptr, false);
+  return Json::parse(MappedFile(path, Links::kRefuse).bytes(), nullptr, false);
 }
 
 }  // namespace

@@ -187,7 +187,8 @@ std::string variant_of(Call& call, MeshFormat format) {
 
 // Errors of the archive are ours: throws.
 std::int32_t dimension_of(const Job& job, const JobFiles& files) {
-  const auto dimension = cell_archive_dimension(MappedFile(files.cell(job.id)).bytes());
+  const auto dimension =
+      cell_archive_dimension(MappedFile(files.cell(job.id), Links::kRefuse).bytes());
   if (!dimension) {
     throw std::runtime_error("the archive of " + job.id + ": " + dimension.error().message);
   }
@@ -197,7 +198,7 @@ std::int32_t dimension_of(const Job& job, const JobFiles& files) {
 // The cell is read before the answer begins, so that a damaged archive is an error and no broken
 // download. Errors are ours: throws.
 std::shared_ptr<const SymmetryCellMesh> load_cell(const Job& job, const JobFiles& files) {
-  auto cell = read_cell_archive(MappedFile(files.cell(job.id)).bytes());
+  auto cell = read_cell_archive(MappedFile(files.cell(job.id), Links::kRefuse).bytes());
   if (!cell) throw std::runtime_error("the archive of " + job.id + ": " + cell.error().message);
   return std::make_shared<const SymmetryCellMesh>(std::move(*cell));
 }
@@ -239,7 +240,7 @@ void send_mesh(Call& call, ServiceContext& context, MeshPart part) {
 
 Producer file_producer(const std::filesystem::path& path) {
   // Opened now: the job may be deleted while its file is on its way.
-  auto file = std::make_shared<FileReader>(path);
+  auto file = std::make_shared<FileReader>(path, Links::kRefuse);
   return [file = std::move(file)](const PieceSink& sink) {
     for (std::string_view piece = file->next(); !piece.empty(); piece = file->next()) {
       if (!sink(piece)) return false;

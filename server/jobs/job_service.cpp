@@ -1,10 +1,7 @@
 #include "server/jobs/job_service.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -21,25 +18,13 @@ namespace {
 // A job during which the server died this often is taken for the cause.
 constexpr std::int32_t kMaxCrashes = 3;
 
-// Two servers on one directory would run every job twice. The lock dies with its process.
-int lock_directory(const std::filesystem::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  if (descriptor < 0) throw std::runtime_error("cannot create " + file.string());
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-    ::close(descriptor);
-    throw std::runtime_error("another server uses " + file.parent_path().string() +
-                             "; choose another --data-dir");
-  }
-  return descriptor;
-}
-
 std::string digest_of(const Submission& submission, const std::string& options_json) {
   Sha256 digest;
   digest.append(options_json);
   digest.append("\n");
   digest.append(model_format_info(submission.model_format).name);
   digest.append("\n");
-  FileReader model(submission.model);
+  FileReader model(submission.model, Links::kRefuse);
   for (std::string_view piece = model.next(); !piece.empty(); piece = model.next()) {
     digest.append(piece);
   }
@@ -64,10 +49,10 @@ JobService::JobService(const std::filesystem::path& data_directory,
       engine_(engine),
       metrics_(metrics),
       logger_(logger),
-      files_(data_directory),
-      lock_descriptor_(lock_directory(files_.lock())) {
-  files_.empty_incoming();
-  store_ = std::make_unique<SqliteJobStore>(files_.database());
+      directory_(data_directory, logger),
+      files_(directory_.path()) {
+  directory_.empty_incoming();
+  store_ = std::make_unique<SqliteJobStore>(files_.database(), directory_.id());
   runner_ = std::make_unique<JobRunner>(
       RunnerParts{engine_, *store_, files_, faults_, changes_, metrics_, logger_}, limits_.workers,
       limits_.queue_limit);
@@ -79,11 +64,17 @@ JobService::~JobService() {
   retention_.reset();
   runner_.reset();
   store_.reset();
-  ::close(lock_descriptor_);
 }
 
 void JobService::start() {
-  files_.sweep([this](const std::string& id) { return store_->find(id).has_value(); });
+  using Fate = DataDirectory::Fate;
+  directory_.sweep_jobs(
+      [this](const std::string& id) {
+        if (store_->find(id)) return Fate::kKeep;
+        return store_->was_erased(id) ? Fate::kRemove : Fate::kUnknown;
+      },
+      [this](const std::string& id) { files_.remove(id); });
+  store_->forget_erased(std::numeric_limits<std::int64_t>::max());
   for (const Job& job : store_->unfinished()) recover(job);
   retention_ = std::make_unique<RetentionKeeper>(limits_.retention, *store_, files_, logger_);
 }

@@ -71,8 +71,13 @@ class JobStore {
   virtual std::optional<Job> apply(std::string_view id,
                                    JobEvent event,
                                    const JobChange& change) = 0;
-  // Forgets the job and its idempotency key; false if it is unknown.
+  // Forgets the job and its idempotency key, all but its id; false if it is unknown.
   virtual bool erase(std::string_view id) = 0;
+  // Files may outlive their job if the server dies before it has removed them: whether a job was
+  // erased tells them from files that the database never heard of.
+  [[nodiscard]] virtual bool was_erased(std::string_view id) = 0;
+  // Forgets those erased up to the mark, of which no files are left; returns the mark of now.
+  virtual std::int64_t forget_erased(std::int64_t mark) = 0;
   [[nodiscard]] virtual StoreTotals totals() = 0;
   // Throws if the database cannot be read.
   virtual void check_health() = 0;

@@ -78,6 +78,8 @@ void RetentionKeeper::work(const std::stop_token& stop) {
     if (stop.stop_requested()) return;
     try {
       const std::size_t removed = apply_retention(rules_, store_, files_, now_ms());
+      // Those of the sweep before: a worker lets go of its files within a second.
+      erased_mark_ = store_.forget_erased(erased_mark_);
       if (removed > 0) {
         logger_.info("jobs_expired", {{"count", static_cast<std::int64_t>(removed)}});
       }

@@ -44,7 +44,8 @@ class RetentionKeeper {
   std::mutex mutex_;  // guards poked_
   std::condition_variable_any wake_;
   bool poked_ = true;
-  std::jthread thread_;  // last: it uses all of the above
+  std::int64_t erased_mark_ = 0;  // of the thread
+  std::jthread thread_;           // last: it uses all of the above
 };
 
 }  // namespace symcell::server

@@ -1,6 +1,10 @@
 #include "server/jobs/sqlite_job_store.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <array>
 #include <limits>
@@ -39,7 +43,14 @@ CREATE TABLE idempotency_keys (
 ) STRICT;
 CREATE INDEX idempotency_keys_by_job ON idempotency_keys (job_id);
 )sql",
+    R"sql(
+CREATE TABLE properties (name TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT;
+CREATE TABLE erased (id TEXT PRIMARY KEY) STRICT;
+)sql",
 };
+
+// How long a statement waits for another process that holds the database, a backup for instance.
+constexpr int kBusyPatienceMs = 5000;
 
 constexpr const char* kColumns =
     "sequence, id, state, created_ms, started_ms, finished_ms, model_format, model_name, "
@@ -103,17 +114,71 @@ void migrate(SQLite::Database& database) {
   }
 }
 
+// SQLite would create it readable for all.
+const std::filesystem::path& create_for_owner(const std::filesystem::path& file) {
+  constexpr mode_t kOwner = S_IRUSR | S_IWUSR;
+  const int created = ::open(file.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, kOwner);
+  if (created < 0) throw std::runtime_error("cannot open the job database " + file.string());
+  // An earlier version left it to the umask.
+  ::fchmod(created, kOwner);
+  ::close(created);
+  return file;
+}
+
+DatabaseFinding examine(SQLite::Database& database) {
+  const std::string fault = database.execAndGet("PRAGMA quick_check(1)").getString();
+  if (fault != "ok") return {DatabaseState::kDamaged, {}, fault};
+  if (database.execAndGet("SELECT COUNT(*) FROM sqlite_schema").getInt() == 0) {
+    return {DatabaseState::kEmpty, {}, {}};
+  }
+  if (!database.tableExists("jobs") || !database.tableExists("idempotency_keys")) {
+    return {DatabaseState::kForeign, {}, {}};
+  }
+  DatabaseFinding finding{DatabaseState::kOurs, {}, {}};
+  if (database.tableExists("properties")) {
+    SQLite::Statement query(database, "SELECT value FROM properties WHERE name = 'directory_id'");
+    if (query.executeStep()) finding.directory_id = query.getColumn(0).getString();
+  }
+  return finding;
+}
+
 }  // namespace
 
+DatabaseFinding examine_job_database(const std::filesystem::path& file) {
+  const auto status = std::filesystem::symlink_status(file);
+  if (!std::filesystem::exists(status)) return {};
+  if (!std::filesystem::is_regular_file(status)) {
+    throw std::runtime_error(file.string() + " should be a file, and no symbolic link");
+  }
+  try {
+    // Writable, for a log that a killed server left is read into the database first.
+    SQLite::Database database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW);
+    database.setBusyTimeout(kBusyPatienceMs);
+    return examine(database);
+  } catch (const SQLite::Exception& exception) {
+    const int code = exception.getErrorCode();
+    if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB) {
+      return {DatabaseState::kDamaged, {}, exception.what()};
+    }
+    throw;
+  }
+}
+
 struct SqliteJobStore::Impl {
-  explicit Impl(const std::filesystem::path& file)
-      : database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
-    database.setBusyTimeout(5000);
+  Impl(const std::filesystem::path& file, const std::string& directory_id)
+      : database(create_for_owner(file).string(),
+                 SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE | SQLite::OPEN_NOFOLLOW) {
+    database.setBusyTimeout(kBusyPatienceMs);
     database.exec("PRAGMA journal_mode = WAL");
     // FULL: a commit is on the disk when it returns; an accepted job is never lost.
     database.exec("PRAGMA synchronous = FULL");
     database.exec("PRAGMA foreign_keys = ON");
     migrate(database);
+    if (directory_id.empty()) return;
+    SQLite::Statement name(
+        database, "INSERT OR IGNORE INTO properties (name, value) VALUES ('directory_id', ?)");
+    name.bind(1, directory_id);
+    name.exec();
   }
 
   // Guards `database`: one connection serves all threads, one statement at a time.
@@ -139,8 +204,8 @@ struct SqliteJobStore::Impl {
   }
 };
 
-SqliteJobStore::SqliteJobStore(const std::filesystem::path& file)
-    : impl_(std::make_unique<Impl>(file)) {
+SqliteJobStore::SqliteJobStore(const std::filesystem::path& file, const std::string& directory_id)
+    : impl_(std::make_unique<Impl>(file, directory_id)) {
 }
 
 SqliteJobStore::~SqliteJobStore() = default;
@@ -253,9 +318,30 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
 
 bool SqliteJobStore::erase(std::string_view id) {
   const std::lock_guard lock(impl_->mutex);
+  SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
   SQLite::Statement erase(impl_->database, "DELETE FROM jobs WHERE id = ?");
   erase.bind(1, std::string(id));
-  return erase.exec() > 0;
+  if (erase.exec() == 0) return false;
+  SQLite::Statement remember(impl_->database, "INSERT OR IGNORE INTO erased (id) VALUES (?)");
+  remember.bind(1, std::string(id));
+  remember.exec();
+  transaction.commit();
+  return true;
+}
+
+bool SqliteJobStore::was_erased(std::string_view id) {
+  const std::lock_guard lock(impl_->mutex);
+  SQLite::Statement query(impl_->database, "SELECT 1 FROM erased WHERE id = ?");
+  query.bind(1, std::string(id));
+  return query.executeStep();
+}
+
+std::int64_t SqliteJobStore::forget_erased(std::int64_t mark) {
+  const std::lock_guard lock(impl_->mutex);
+  SQLite::Statement forget(impl_->database, "DELETE FROM erased WHERE rowid <= ?");
+  forget.bind(1, mark);
+  forget.exec();
+  return impl_->database.execAndGet("SELECT COALESCE(MAX(rowid), 0) FROM erased").getInt64();
 }
 
 StoreTotals SqliteJobStore::totals() {

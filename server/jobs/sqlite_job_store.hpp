@@ -4,17 +4,39 @@
 // refuses newer ones.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "server/jobs/job_store.hpp"
 
 namespace symcell::server {
 
+enum class DatabaseState : std::uint8_t {
+  kMissing,
+  kEmpty,    // nothing in it, as a database that was truncated or never written
+  kOurs,     // of any version
+  kForeign,  // sound, and with tables, but without jobs
+  kDamaged,
+};
+
+struct DatabaseFinding {
+  DatabaseState state = DatabaseState::kMissing;
+  std::string directory_id;  // of kOurs; empty: written by a version that gave none
+  std::string fault;         // of kDamaged
+};
+
+// Reads all of the file and changes nothing.  Throws std::runtime_error if it cannot be read (no
+// rights, a symbolic link, an error of the disk), which says nothing about its contents.
+[[nodiscard]] DatabaseFinding examine_job_database(const std::filesystem::path& file);
+
 class SqliteJobStore final : public JobStore {
  public:
-  // Throws std::runtime_error if the file is no database of ours or of a newer version.
-  explicit SqliteJobStore(const std::filesystem::path& file);
+  // Creates the file, for its owner alone, if it is missing.  `directory_id`: written to a database
+  // that has none.  Throws std::runtime_error if the file is no database of ours or of a newer
+  // version.
+  explicit SqliteJobStore(const std::filesystem::path& file, const std::string& directory_id = {});
   ~SqliteJobStore() override;
 
   InsertOutcome insert(const Job& job, const std::optional<IdempotencyKey>& key) override;
@@ -25,6 +47,8 @@ class SqliteJobStore final : public JobStore {
   [[nodiscard]] std::vector<Job> oldest_finished(std::size_t limit) override;
   std::optional<Job> apply(std::string_view id, JobEvent event, const JobChange& change) override;
   bool erase(std::string_view id) override;
+  [[nodiscard]] bool was_erased(std::string_view id) override;
+  std::int64_t forget_erased(std::int64_t mark) override;
   [[nodiscard]] StoreTotals totals() override;
   void check_health() override;
 

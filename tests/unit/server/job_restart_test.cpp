@@ -89,15 +89,25 @@ TEST_F(JobRestartTest, AJobWithoutItsModelFails) {
   EXPECT_EQ(service_.jobs->find(id)->state, JobState::kFailed);
 }
 
-TEST_F(JobRestartTest, LeftoversAreSwept) {
+TEST_F(JobRestartTest, BodiesThatWereArrivingAreRemovedAndWhatIsUnknownIsPutAway) {
   const auto orphan = service_.folder.path() / "jobs" / "unknown";
-  const auto upload = service_.folder.path() / "incoming" / "half";
+  const auto upload = service_.jobs->files().incoming();
+  const auto stray = service_.folder.path() / "incoming" / "half";
   ASSERT_TRUE(service_.close());
   std::filesystem::create_directory(orphan);
   symcell::test::write_file(upload, "half a model");
+  symcell::test::write_file(stray, "no name of ours");
   service_.open();
   EXPECT_FALSE(std::filesystem::exists(orphan));
   EXPECT_FALSE(std::filesystem::exists(upload));
+  EXPECT_FALSE(std::filesystem::exists(stray));
+  std::size_t kept = 0;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(service_.folder.path() / "quarantine")) {
+    const auto name = entry.path().filename();
+    if (name == "unknown" || name == "half") ++kept;
+  }
+  EXPECT_EQ(kept, 2U);
 }
 
 }  // namespace
