@@ -43,6 +43,8 @@ constexpr std::array kTable{
                       "The server cannot do this"},
     ServiceProblemRow{ServiceProblem::kStopping, 503, "stopping", "The server is stopping"},
     ServiceProblemRow{ServiceProblem::kOverloaded, 503, "overloaded", "The server is overloaded"},
+    ServiceProblemRow{ServiceProblem::kStoreUnavailable, 503, "store_unavailable",
+                      "The job store does not answer"},
     ServiceProblemRow{ServiceProblem::kStorageFull, 507, "storage_full",
                       "The server has no room for the job"},
     ServiceProblemRow{ServiceProblem::kInternal, 500, "internal", "Internal error"},

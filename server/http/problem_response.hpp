@@ -33,6 +33,7 @@ enum class ServiceProblem : std::uint8_t {
   kNotImplemented,
   kStopping,
   kOverloaded,
+  kStoreUnavailable,
   kStorageFull,
   kInternal,
 };

@@ -31,6 +31,9 @@ void declare_metrics(Metrics& metrics) {
   metrics.declare_histogram("symcell_job_duration_seconds",
                             "Time jobs ran, by the state they ended in.",
                             {0.01, 0.05, 0.25, 1, 5, 30, 120, 600, 3600});
+  metrics.declare_counter("symcell_job_write_retries_total",
+                          "Times that a job's state or results could not be written and were tried "
+                          "again.");
   metrics.declare_counter("symcell_internal_errors_total", "Bugs and failures of the machine.");
 }
 

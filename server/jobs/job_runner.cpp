@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <cerrno>
 #include <exception>
 #include <new>
 #include <nlohmann/json.hpp>
@@ -19,6 +20,35 @@ namespace {
 
 // How long a cancelled engine may take before stop() gives it up; it promises one second.
 constexpr std::chrono::seconds kCancelPatience{5};
+
+// Between two tries of what the store or the disk refused.
+constexpr std::chrono::milliseconds kFirstPause{50};
+constexpr std::chrono::milliseconds kLongestPause{1000};
+
+// What passes when the cause is gone, unlike a file that is missing.
+bool may_pass(const std::system_error& error) {
+  if (error.code().category() != std::generic_category()) return false;
+  switch (error.code().value()) {
+    case ENOSPC:
+    case EDQUOT:
+    case EROFS:
+    case EIO:
+    case ENOMEM:
+    case EMFILE:
+    case ENFILE: return true;
+    default: return false;
+  }
+}
+
+// Also after a try that came half way.
+void publish_file(const std::filesystem::path& file) {
+  const std::filesystem::path part = JobFiles::partial(file);
+  if (std::filesystem::exists(file) && !std::filesystem::exists(part)) {
+    sync_directory(file.parent_path());
+    return;
+  }
+  rename_durably(part, file);
+}
 
 std::int64_t file_bytes(const std::filesystem::path& file) {
   return static_cast<std::int64_t>(std::filesystem::file_size(file));
@@ -102,6 +132,7 @@ std::size_t JobRunner::running() const {
 bool JobRunner::stop(std::chrono::milliseconds grace) {
   std::unique_lock lock(mutex_);
   stopping_ = true;
+  stopped_.notify_all();
   const auto none_runs = [this] { return running_.empty(); };
   if (!idle_.wait_for(lock, grace, none_runs)) {
     for (const auto& [id, running] : running_) {
@@ -129,7 +160,7 @@ void JobRunner::run_next() {
   try {
     execute(id, *running);
   } catch (const std::exception& exception) {
-    // The store or the disk failed. The row stays as it is; the next start requeues the job.
+    // A failure that does not pass. The row stays as it is; the next start requeues the job.
     parts_.logger.error("job_bookkeeping_failed", {{"job", id}, {"what", exception.what()}});
     parts_.metrics.count("symcell_internal_errors_total", {{"where", "job"}});
   }
@@ -154,9 +185,38 @@ void JobRunner::remove_files_if_deleted(const std::string& id) {
   }
 }
 
+bool JobRunner::persist(const std::string& id, const std::function<void()>& work) {
+  for (std::chrono::milliseconds pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
+    std::string fault;
+    try {
+      work();
+      return true;
+    } catch (const StoreError& error) {
+      fault = error.what();
+    } catch (const std::system_error& error) {
+      if (!may_pass(error)) throw;
+      fault = error.what();
+    }
+    parts_.metrics.count("symcell_job_write_retries_total");
+    parts_.logger.warning("job_write_failed", {{"job", id}, {"what", std::string_view(fault)}});
+    std::unique_lock lock(mutex_);
+    if (stopped_.wait_for(lock, pause, [this] { return stopping_; })) return false;
+  }
+}
+
+bool JobRunner::publish(const std::string& id) {
+  return persist(id, [&] {
+    publish_file(parts_.files.statistics(id));
+    publish_file(parts_.files.cell(id));
+  });
+}
+
 void JobRunner::execute(const std::string& id, Running& running) {
-  const auto job = parts_.store.apply(id, JobEvent::kStart, {.time_ms = now_ms()});
-  if (!job) return;  // deleted between the queue and here
+  std::optional<Job> job;
+  const bool asked =
+      persist(id, [&] { job = parts_.store.apply(id, JobEvent::kStart, {.time_ms = now_ms()}); });
+  if (!asked) return;  // the row says queued: the next start takes it up
+  if (!job) return;    // deleted between the queue and here
   parts_.logger.info("job_started", {{"job", id}});
   parts_.changes.notify();
 
@@ -191,8 +251,10 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
   running.context.set_max_elements(options->max_elements);
   SYMCELL_TRY(running.context.check());
   SYMCELL_TRY(parts_.engine.run(work, running.context));
-  rename_durably(work.statistics, parts_.files.statistics(job.id));
-  rename_durably(work.cell, parts_.files.cell(job.id));
+  if (!publish(job.id)) {
+    running.requeue = true;
+    return fail(ErrorCode::kCancelled, "the server stops");
+  }
   return {};
 }
 
@@ -221,7 +283,14 @@ void JobRunner::settle(const Job& job, Running& running, const Result<void>& res
     change.error_json = problem_document(result.error(), "/v1/jobs/" + job.id, "/model")
                             .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   }
-  const auto settled = parts_.store.apply(job.id, event, change);
+  std::optional<Job> settled;
+  const bool written =
+      persist(job.id, [&] { settled = parts_.store.apply(job.id, event, change); });
+  if (!written) {
+    // The row says running, and the next start takes the job up again.
+    parts_.logger.error("job_end_not_written", {{"job", job.id}});
+    return;
+  }
   if (!settled) return;  // deleted while it ran
   const double seconds = static_cast<double>(change.time_ms - job.started_ms.value_or(0)) / 1000;
   const std::string_view state = job_state_name(settled->state);

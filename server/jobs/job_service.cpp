@@ -11,6 +11,7 @@
 #include "server/base/files.hpp"
 #include "server/base/identifiers.hpp"
 #include "server/jobs/sqlite_job_store.hpp"
+#include "server/jobs/watched_job_store.hpp"
 
 namespace symcell::server {
 namespace {
@@ -52,7 +53,8 @@ JobService::JobService(const std::filesystem::path& data_directory,
       directory_(data_directory, logger),
       files_(directory_.path()) {
   directory_.empty_incoming();
-  store_ = std::make_unique<SqliteJobStore>(files_.database(), directory_.id());
+  store_ = std::make_unique<WatchedJobStore>(
+      std::make_unique<SqliteJobStore>(files_.database(), directory_.id()), metrics_, logger_);
   runner_ = std::make_unique<JobRunner>(
       RunnerParts{engine_, *store_, files_, faults_, changes_, metrics_, logger_}, limits_.workers,
       limits_.queue_limit);
@@ -199,7 +201,13 @@ std::optional<Job> JobService::cancel(std::string_view id) {
   auto job = find(id);
   if (!job || is_finished(job->state)) return job;
   if (runner_->cancel(id) == JobRunner::CancelResult::kDequeued) {
-    store_->apply(id, JobEvent::kCancel, {.time_ms = now_ms()});
+    try {
+      store_->apply(id, JobEvent::kCancel, {.time_ms = now_ms()});
+    } catch (...) {
+      // Not cancelled, then: it must not be left queued with nobody to run it.
+      runner_->enqueue_recovered(std::string(id));
+      throw;
+    }
     logger_.info("job_cancelled_in_queue", {{"job", id}});
     changes_.notify();
   }
@@ -208,8 +216,8 @@ std::optional<Job> JobService::cancel(std::string_view id) {
 
 bool JobService::erase(std::string_view id) {
   if (!is_job_id(id)) return false;
-  runner_->cancel(id);
   if (!store_->erase(id)) return false;
+  runner_->cancel(id);
   // A worker that still holds the job removes the files when it lets go and finds the row gone.
   if (!runner_->progress(id)) files_.remove(id);
   faults_.remove(id);

@@ -1,12 +1,13 @@
 // Where jobs are kept: an interface, so that an embedded and a shared database can stand behind it.
 //
 // Every call is atomic and, once it returns, durable. Any thread may call. A failing database
-// throws std::runtime_error (see server/base/files.hpp for why).
+// throws StoreError (see server/base/files.hpp for why).
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,18 @@
 #include "server/jobs/job.hpp"
 
 namespace symcell::server {
+
+// The database does not do what it was asked, and has changed nothing: it is locked, full, damaged or
+// gone. What was asked may be asked again.
+class StoreError : public std::runtime_error {
+ public:
+  enum class Kind : std::uint8_t { kBusy, kFull, kDamaged, kOther };
+  StoreError(Kind kind, const std::string& what) : std::runtime_error(what), kind_(kind) {}
+  [[nodiscard]] Kind kind() const { return kind_; }
+
+ private:
+  Kind kind_;
+};
 
 // A caller's promise that requests with the same key are the same request.
 struct IdempotencyKey {
@@ -79,7 +92,7 @@ class JobStore {
   // Forgets those erased up to the mark, of which no files are left; returns the mark of now.
   virtual std::int64_t forget_erased(std::int64_t mark) = 0;
   [[nodiscard]] virtual StoreTotals totals() = 0;
-  // Throws if the database cannot be read.
+  // Throws if the database cannot be read or written, or does not answer at once.
   virtual void check_health() = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
@@ -50,7 +51,10 @@ CREATE TABLE erased (id TEXT PRIMARY KEY) STRICT;
 };
 
 // How long a statement waits for another process that holds the database, a backup for instance.
-constexpr int kBusyPatienceMs = 5000;
+// Whoever must not fail for it asks again.
+constexpr int kBusyPatienceMs = 2000;
+// How long a look at the store's health waits for those that write.
+constexpr std::chrono::milliseconds kHealthPatience{250};
 
 constexpr const char* kColumns =
     "sequence, id, state, created_ms, started_ms, finished_ms, model_format, model_name, "
@@ -114,6 +118,26 @@ void migrate(SQLite::Database& database) {
   }
 }
 
+StoreError::Kind kind_of(const SQLite::Exception& exception) {
+  switch (exception.getErrorCode()) {
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED: return StoreError::Kind::kBusy;
+    case SQLITE_FULL: return StoreError::Kind::kFull;
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB: return StoreError::Kind::kDamaged;
+    default: return StoreError::Kind::kOther;
+  }
+}
+
+template <class Work>
+auto translated(const Work& work) {
+  try {
+    return work();
+  } catch (const SQLite::Exception& exception) {
+    throw StoreError(kind_of(exception), exception.what());
+  }
+}
+
 // SQLite would create it readable for all.
 const std::filesystem::path& create_for_owner(const std::filesystem::path& file) {
   constexpr mode_t kOwner = S_IRUSR | S_IWUSR;
@@ -166,8 +190,9 @@ DatabaseFinding examine_job_database(const std::filesystem::path& file) {
 
 struct SqliteJobStore::Impl {
   Impl(const std::filesystem::path& file, const std::string& directory_id)
-      : database(create_for_owner(file).string(),
-                 SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE | SQLite::OPEN_NOFOLLOW) {
+      : database(create_for_owner(file).string(), SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW),
+        reader(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW) {
+    reader.setBusyTimeout(kBusyPatienceMs);
     database.setBusyTimeout(kBusyPatienceMs);
     database.exec("PRAGMA journal_mode = WAL");
     // FULL: a commit is on the disk when it returns; an accepted job is never lost.
@@ -181,11 +206,25 @@ struct SqliteJobStore::Impl {
     name.exec();
   }
 
-  // Guards `database`: one connection serves all threads, one statement at a time.
-  std::mutex mutex;
-  SQLite::Database database;
+  // Runs `work` with the connection that writes, one at a time.
+  template <class Work>
+  auto write(const Work& work) {
+    const std::lock_guard lock(writing);
+    return translated([&] { return work(database); });
+  }
+  // The same with the connection that reads: a write that waits for a lock holds nobody up.
+  template <class Work>
+  auto read(const Work& work) {
+    const std::lock_guard lock(reading);
+    return translated([&] { return work(reader); });
+  }
 
-  std::optional<Job> find_locked(std::string_view id) {
+  std::timed_mutex writing;  // guards `database`
+  SQLite::Database database;
+  std::mutex reading;  // guards `reader`
+  SQLite::Database reader;
+
+  static std::optional<Job> find(SQLite::Database& database, std::string_view id) {
     SQLite::Statement query(database,
                             std::string("SELECT ") + kColumns + " FROM jobs WHERE id = ?");
     query.bind(1, std::string(id));
@@ -193,12 +232,13 @@ struct SqliteJobStore::Impl {
     return read_job(query);
   }
 
-  std::optional<InsertOutcome> known_key_locked(const IdempotencyKey& key) {
+  static std::optional<InsertOutcome> known_key(SQLite::Database& database,
+                                                const IdempotencyKey& key) {
     SQLite::Statement query(database, "SELECT digest, job_id FROM idempotency_keys WHERE key = ?");
     query.bind(1, key.key);
     if (!query.executeStep()) return std::nullopt;
     const bool same = query.getColumn(0).getString() == key.digest;
-    const auto job = find_locked(query.getColumn(1).getString());
+    const auto job = find(database, query.getColumn(1).getString());
     if (!job) throw std::runtime_error("an idempotency key without its job");
     return InsertOutcome{same ? InsertResult::kReplayed : InsertResult::kConflict, *job};
   }
@@ -211,157 +251,180 @@ SqliteJobStore::SqliteJobStore(const std::filesystem::path& file, const std::str
 SqliteJobStore::~SqliteJobStore() = default;
 
 InsertOutcome SqliteJobStore::insert(const Job& job, const std::optional<IdempotencyKey>& key) {
-  const std::lock_guard lock(impl_->mutex);
-  SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
-  if (key) {
-    if (auto known = impl_->known_key_locked(*key)) return *known;
-  }
-  SQLite::Statement insert(impl_->database,
-                           "INSERT INTO jobs (id, state, created_ms, model_format, model_name, "
-                           "options_json, model_bytes) VALUES (?, ?, ?, ?, ?, ?, ?)");
-  insert.bind(1, job.id);
-  insert.bind(2, std::string(job_state_name(job.state)));
-  insert.bind(3, job.created_ms);
-  insert.bind(4, format_name(job.model_format));
-  insert.bind(5, job.model_name);
-  insert.bind(6, job.options_json);
-  insert.bind(7, job.model_bytes);
-  insert.exec();
-  Job stored = job;
-  stored.sequence = impl_->database.getLastInsertRowid();
-  if (key) {
-    SQLite::Statement remember(
-        impl_->database, "INSERT INTO idempotency_keys (key, digest, job_id) VALUES (?, ?, ?)");
-    remember.bind(1, key->key);
-    remember.bind(2, key->digest);
-    remember.bind(3, job.id);
-    remember.exec();
-  }
-  transaction.commit();
-  return {InsertResult::kInserted, stored};
+  return impl_->write([&](SQLite::Database& database) -> InsertOutcome {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    if (key) {
+      if (auto known = Impl::known_key(database, *key)) return *known;
+    }
+    SQLite::Statement insert(database,
+                             "INSERT INTO jobs (id, state, created_ms, model_format, model_name, "
+                             "options_json, model_bytes) VALUES (?, ?, ?, ?, ?, ?, ?)");
+    insert.bind(1, job.id);
+    insert.bind(2, std::string(job_state_name(job.state)));
+    insert.bind(3, job.created_ms);
+    insert.bind(4, format_name(job.model_format));
+    insert.bind(5, job.model_name);
+    insert.bind(6, job.options_json);
+    insert.bind(7, job.model_bytes);
+    insert.exec();
+    Job stored = job;
+    stored.sequence = database.getLastInsertRowid();
+    if (key) {
+      SQLite::Statement remember(
+          database, "INSERT INTO idempotency_keys (key, digest, job_id) VALUES (?, ?, ?)");
+      remember.bind(1, key->key);
+      remember.bind(2, key->digest);
+      remember.bind(3, job.id);
+      remember.exec();
+    }
+    transaction.commit();
+    return {InsertResult::kInserted, stored};
+  });
 }
 
 std::optional<InsertOutcome> SqliteJobStore::find_key(const IdempotencyKey& key) {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->known_key_locked(key);
+  return impl_->read([&](SQLite::Database& database) { return Impl::known_key(database, key); });
 }
 
 std::optional<Job> SqliteJobStore::find(std::string_view id) {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->find_locked(id);
+  return impl_->read([&](SQLite::Database& database) { return Impl::find(database, id); });
 }
 
 std::vector<Job> SqliteJobStore::list(const JobFilter& filter) {
-  const std::lock_guard lock(impl_->mutex);
   std::string sql = std::string("SELECT ") + kColumns + " FROM jobs WHERE sequence < ?";
   if (filter.state) sql += " AND state = ?";
   sql += " ORDER BY sequence DESC LIMIT " + std::to_string(filter.limit);
-  SQLite::Statement query(impl_->database, sql);
-  query.bind(1, filter.before_sequence.value_or(std::numeric_limits<std::int64_t>::max()));
-  if (filter.state) query.bind(2, std::string(job_state_name(*filter.state)));
-  return read_jobs(query);
+  return impl_->read([&](SQLite::Database& database) {
+    SQLite::Statement query(database, sql);
+    query.bind(1, filter.before_sequence.value_or(std::numeric_limits<std::int64_t>::max()));
+    if (filter.state) query.bind(2, std::string(job_state_name(*filter.state)));
+    return read_jobs(query);
+  });
 }
 
 std::vector<Job> SqliteJobStore::unfinished() {
-  const std::lock_guard lock(impl_->mutex);
-  SQLite::Statement query(impl_->database,
-                          std::string("SELECT ") + kColumns +
-                              " FROM jobs WHERE state IN ('queued', 'running') ORDER BY sequence");
-  return read_jobs(query);
+  return impl_->read([&](SQLite::Database& database) {
+    SQLite::Statement query(
+        database, std::string("SELECT ") + kColumns +
+                      " FROM jobs WHERE state IN ('queued', 'running') ORDER BY sequence");
+    return read_jobs(query);
+  });
 }
 
 std::vector<Job> SqliteJobStore::oldest_finished(std::size_t limit) {
-  const std::lock_guard lock(impl_->mutex);
-  SQLite::Statement query(impl_->database, std::string("SELECT ") + kColumns +
-                                               " FROM jobs WHERE state IN " + kFinished +
-                                               " ORDER BY finished_ms, sequence LIMIT " +
-                                               std::to_string(limit));
-  return read_jobs(query);
+  return impl_->read([&](SQLite::Database& database) {
+    SQLite::Statement query(
+        database, std::string("SELECT ") + kColumns + " FROM jobs WHERE state IN " + kFinished +
+                      " ORDER BY finished_ms, sequence LIMIT " + std::to_string(limit));
+    return read_jobs(query);
+  });
 }
 
 std::optional<Job> SqliteJobStore::apply(std::string_view id,
                                          JobEvent event,
                                          const JobChange& change) {
-  const std::lock_guard lock(impl_->mutex);
-  SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
-  auto job = impl_->find_locked(id);
-  if (!job) return std::nullopt;
-  const auto next = next_state(job->state, event);
-  if (!next) return std::nullopt;
-  job->state = *next;
-  if (event == JobEvent::kStart) job->started_ms = change.time_ms;
-  if (event == JobEvent::kRequeue) {
-    job->started_ms.reset();
-    job->crashes += change.crashed ? 1 : 0;
-  }
-  if (is_finished(*next)) job->finished_ms = change.time_ms;
-  job->error_code = change.error_code;
-  job->error_json = change.error_json;
-  job->result_bytes = change.result_bytes;
+  return impl_->write([&](SQLite::Database& database) -> std::optional<Job> {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    auto job = Impl::find(database, id);
+    if (!job) return std::nullopt;
+    const auto next = next_state(job->state, event);
+    if (!next) return std::nullopt;
+    job->state = *next;
+    if (event == JobEvent::kStart) job->started_ms = change.time_ms;
+    if (event == JobEvent::kRequeue) {
+      job->started_ms.reset();
+      job->crashes += change.crashed ? 1 : 0;
+    }
+    if (is_finished(*next)) job->finished_ms = change.time_ms;
+    job->error_code = change.error_code;
+    job->error_json = change.error_json;
+    job->result_bytes = change.result_bytes;
 
-  SQLite::Statement update(impl_->database,
-                           "UPDATE jobs SET state = ?, started_ms = ?, finished_ms = ?, "
-                           "error_code = ?, error_json = ?, result_bytes = ?, crashes = ? "
-                           "WHERE id = ?");
-  update.bind(1, std::string(job_state_name(job->state)));
-  if (job->started_ms) update.bind(2, *job->started_ms);
-  if (job->finished_ms) update.bind(3, *job->finished_ms);
-  update.bind(4, job->error_code);
-  update.bind(5, job->error_json);
-  update.bind(6, job->result_bytes);
-  update.bind(7, job->crashes);
-  update.bind(8, job->id);
-  update.exec();
-  transaction.commit();
-  return job;
+    SQLite::Statement update(database,
+                             "UPDATE jobs SET state = ?, started_ms = ?, finished_ms = ?, "
+                             "error_code = ?, error_json = ?, result_bytes = ?, crashes = ? "
+                             "WHERE id = ?");
+    update.bind(1, std::string(job_state_name(job->state)));
+    if (job->started_ms) update.bind(2, *job->started_ms);
+    if (job->finished_ms) update.bind(3, *job->finished_ms);
+    update.bind(4, job->error_code);
+    update.bind(5, job->error_json);
+    update.bind(6, job->result_bytes);
+    update.bind(7, job->crashes);
+    update.bind(8, job->id);
+    update.exec();
+    transaction.commit();
+    return job;
+  });
 }
 
 bool SqliteJobStore::erase(std::string_view id) {
-  const std::lock_guard lock(impl_->mutex);
-  SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
-  SQLite::Statement erase(impl_->database, "DELETE FROM jobs WHERE id = ?");
-  erase.bind(1, std::string(id));
-  if (erase.exec() == 0) return false;
-  SQLite::Statement remember(impl_->database, "INSERT OR IGNORE INTO erased (id) VALUES (?)");
-  remember.bind(1, std::string(id));
-  remember.exec();
-  transaction.commit();
-  return true;
+  return impl_->write([&](SQLite::Database& database) {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    SQLite::Statement erase(database, "DELETE FROM jobs WHERE id = ?");
+    erase.bind(1, std::string(id));
+    if (erase.exec() == 0) return false;
+    SQLite::Statement remember(database, "INSERT OR IGNORE INTO erased (id) VALUES (?)");
+    remember.bind(1, std::string(id));
+    remember.exec();
+    transaction.commit();
+    return true;
+  });
 }
 
 bool SqliteJobStore::was_erased(std::string_view id) {
-  const std::lock_guard lock(impl_->mutex);
-  SQLite::Statement query(impl_->database, "SELECT 1 FROM erased WHERE id = ?");
-  query.bind(1, std::string(id));
-  return query.executeStep();
+  return impl_->read([&](SQLite::Database& database) {
+    SQLite::Statement query(database, "SELECT 1 FROM erased WHERE id = ?");
+    query.bind(1, std::string(id));
+    return query.executeStep();
+  });
 }
 
 std::int64_t SqliteJobStore::forget_erased(std::int64_t mark) {
-  const std::lock_guard lock(impl_->mutex);
-  SQLite::Statement forget(impl_->database, "DELETE FROM erased WHERE rowid <= ?");
-  forget.bind(1, mark);
-  forget.exec();
-  return impl_->database.execAndGet("SELECT COALESCE(MAX(rowid), 0) FROM erased").getInt64();
+  return impl_->write([&](SQLite::Database& database) {
+    SQLite::Statement forget(database, "DELETE FROM erased WHERE rowid <= ?");
+    forget.bind(1, mark);
+    forget.exec();
+    return database.execAndGet("SELECT COALESCE(MAX(rowid), 0) FROM erased").getInt64();
+  });
 }
 
 StoreTotals SqliteJobStore::totals() {
-  const std::lock_guard lock(impl_->mutex);
-  StoreTotals totals;
-  SQLite::Statement query(impl_->database,
-                          "SELECT state, COUNT(*), SUM(model_bytes + result_bytes) FROM jobs "
-                          "GROUP BY state");
-  while (query.executeStep()) {
-    if (const auto state = job_state_from_name(query.getColumn(0).getString())) {
-      totals.by_state[static_cast<std::size_t>(*state)] = query.getColumn(1).getInt64();
+  return impl_->read([&](SQLite::Database& database) {
+    StoreTotals totals;
+    SQLite::Statement query(database,
+                            "SELECT state, COUNT(*), SUM(model_bytes + result_bytes) FROM jobs "
+                            "GROUP BY state");
+    while (query.executeStep()) {
+      if (const auto state = job_state_from_name(query.getColumn(0).getString())) {
+        totals.by_state[static_cast<std::size_t>(*state)] = query.getColumn(1).getInt64();
+      }
+      totals.bytes += query.getColumn(2).getInt64();
     }
-    totals.bytes += query.getColumn(2).getInt64();
-  }
-  return totals;
+    return totals;
+  });
 }
 
 void SqliteJobStore::check_health() {
-  const std::lock_guard lock(impl_->mutex);
-  impl_->database.execAndGet("SELECT COUNT(*) FROM (SELECT 1 FROM jobs LIMIT 1)");
+  impl_->read([](SQLite::Database& database) {
+    static_cast<void>(database.execAndGet("SELECT COUNT(*) FROM (SELECT 1 FROM jobs LIMIT 1)"));
+  });
+  std::unique_lock lock(impl_->writing, kHealthPatience);
+  if (!lock) throw StoreError(StoreError::Kind::kBusy, "writes to the job database do not end");
+  translated([&] {
+    SQLite::Database& database = impl_->database;
+    // Whoever asks wants to know now, not to wait until it is well again.
+    database.setBusyTimeout(0);
+    try {
+      database.exec(
+          "INSERT INTO properties (name, value) VALUES ('probe', '0') "
+          "ON CONFLICT (name) DO UPDATE SET value = 1 - value");
+    } catch (...) {
+      database.setBusyTimeout(kBusyPatienceMs);
+      throw;
+    }
+    database.setBusyTimeout(kBusyPatienceMs);
+  });
 }
 
 }  // namespace symcell::server
