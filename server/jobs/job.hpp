@@ -48,7 +48,7 @@ struct Job {
   std::string error_json;  // problem document; empty unless failed
   std::int64_t model_bytes = 0;
   std::int64_t result_bytes = 0;
-  std::int32_t crashes = 0;  // how often the server died while it ran this job
+  std::int32_t lost_workers = 0;  // how often a worker that ran this job was killed from outside
 };
 
 }  // namespace symcell::server

@@ -204,6 +204,15 @@ bool JobRunner::persist(const std::string& id, const std::function<void()>& work
   }
 }
 
+void JobRunner::count_lost_worker(const std::string& id) {
+  {
+    // Where everything is told to stop at once, workers may end before the server has them ended.
+    const std::lock_guard lock(mutex_);
+    if (stopping_) return;
+  }
+  static_cast<void>(persist(id, [&] { parts_.store.count_lost_worker(id); }));
+}
+
 bool JobRunner::publish(const std::string& id) {
   return persist(id, [&] {
     publish_file(parts_.files.statistics(id));
@@ -243,6 +252,8 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
   work.options = *options;
   work.cell = JobFiles::partial(parts_.files.cell(job.id));
   work.statistics = JobFiles::partial(parts_.files.statistics(job.id));
+  work.lost_workers = job.lost_workers;
+  work.on_lost_worker = [this, &job] { count_lost_worker(job.id); };
   // Left by a run that died.
   std::filesystem::remove(work.cell);
   std::filesystem::remove(work.statistics);

@@ -86,6 +86,7 @@ class JobRunner {
   // Does `work` again, with longer and longer pauses, while it throws StoreError or what a disk that
   // is full or gone throws. False: the server stops.
   [[nodiscard]] bool persist(const std::string& id, const std::function<void()>& work);
+  void count_lost_worker(const std::string& id);
   // Moves the results to their names.
   [[nodiscard]] bool publish(const std::string& id);
   [[nodiscard]] Result<void> run_engine(const Job& job, Running& running);

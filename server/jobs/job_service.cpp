@@ -16,9 +16,6 @@
 namespace symcell::server {
 namespace {
 
-// A job during which the server died this often is taken for the cause.
-constexpr std::int32_t kMaxCrashes = 3;
-
 std::string digest_of(const Submission& submission, const std::string& options_json) {
   Sha256 digest;
   digest.append(options_json);
@@ -86,14 +83,10 @@ void JobService::recover(const Job& job) {
     store_->apply(job.id, JobEvent::kFail, failure(job, "the model's file is lost"));
     return;
   }
+  // A death of the server says nothing of the job: it meshes in a process of its own, whose ends are
+  // counted.
   if (job.state == JobState::kRunning) {
-    if (job.crashes + 1 >= kMaxCrashes) {
-      logger_.error("job_given_up", {{"job", job.id}, {"crashes", std::int64_t{kMaxCrashes}}});
-      store_->apply(job.id, JobEvent::kFail,
-                    failure(job, "the server died repeatedly while it ran this job"));
-      return;
-    }
-    store_->apply(job.id, JobEvent::kRequeue, {.time_ms = now_ms(), .crashed = true});
+    store_->apply(job.id, JobEvent::kRequeue, {.time_ms = now_ms()});
   }
   logger_.info("job_recovered", {{"job", job.id}});
   runner_->enqueue_recovered(job.id);

@@ -57,7 +57,6 @@ struct JobChange {
   std::string error_code = {};
   std::string error_json = {};
   std::int64_t result_bytes = 0;
-  bool crashed = false;  // requeue: because the server died
 };
 
 struct StoreTotals {
@@ -84,6 +83,8 @@ class JobStore {
   virtual std::optional<Job> apply(std::string_view id,
                                    JobEvent event,
                                    const JobChange& change) = 0;
+  // One more worker was killed while it ran this job.
+  virtual void count_lost_worker(std::string_view id) = 0;
   // Forgets the job and its idempotency key, all but its id; false if it is unknown.
   virtual bool erase(std::string_view id) = 0;
   // Files may outlive their job if the server dies before it has removed them: whether a job was

@@ -48,6 +48,11 @@ CREATE INDEX idempotency_keys_by_job ON idempotency_keys (job_id);
 CREATE TABLE properties (name TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT;
 CREATE TABLE erased (id TEXT PRIMARY KEY) STRICT;
 )sql",
+    // Counted before: deaths of the server, which are no fault of the job's.
+    R"sql(
+ALTER TABLE jobs RENAME COLUMN crashes TO lost_workers;
+UPDATE jobs SET lost_workers = 0 WHERE lost_workers <> 0;
+)sql",
 };
 
 // How long a statement waits for another process that holds the database, a backup for instance.
@@ -58,7 +63,7 @@ constexpr std::chrono::milliseconds kHealthPatience{250};
 
 constexpr const char* kColumns =
     "sequence, id, state, created_ms, started_ms, finished_ms, model_format, model_name, "
-    "options_json, error_code, error_json, model_bytes, result_bytes, crashes";
+    "options_json, error_code, error_json, model_bytes, result_bytes, lost_workers";
 constexpr const char* kFinished = "('succeeded', 'failed', 'cancelled')";
 
 std::string format_name(ModelFormat format) {
@@ -92,7 +97,7 @@ Job read_job(SQLite::Statement& row) {
   job.error_json = row.getColumn(10).getString();
   job.model_bytes = row.getColumn(11).getInt64();
   job.result_bytes = row.getColumn(12).getInt64();
-  job.crashes = row.getColumn(13).getInt();
+  job.lost_workers = row.getColumn(13).getInt();
   return job;
 }
 
@@ -331,10 +336,7 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
     if (!next) return std::nullopt;
     job->state = *next;
     if (event == JobEvent::kStart) job->started_ms = change.time_ms;
-    if (event == JobEvent::kRequeue) {
-      job->started_ms.reset();
-      job->crashes += change.crashed ? 1 : 0;
-    }
+    if (event == JobEvent::kRequeue) job->started_ms.reset();
     if (is_finished(*next)) job->finished_ms = change.time_ms;
     job->error_code = change.error_code;
     job->error_json = change.error_json;
@@ -342,19 +344,26 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
 
     SQLite::Statement update(database,
                              "UPDATE jobs SET state = ?, started_ms = ?, finished_ms = ?, "
-                             "error_code = ?, error_json = ?, result_bytes = ?, crashes = ? "
-                             "WHERE id = ?");
+                             "error_code = ?, error_json = ?, result_bytes = ? WHERE id = ?");
     update.bind(1, std::string(job_state_name(job->state)));
     if (job->started_ms) update.bind(2, *job->started_ms);
     if (job->finished_ms) update.bind(3, *job->finished_ms);
     update.bind(4, job->error_code);
     update.bind(5, job->error_json);
     update.bind(6, job->result_bytes);
-    update.bind(7, job->crashes);
-    update.bind(8, job->id);
+    update.bind(7, job->id);
     update.exec();
     transaction.commit();
     return job;
+  });
+}
+
+void SqliteJobStore::count_lost_worker(std::string_view id) {
+  impl_->write([&](SQLite::Database& database) {
+    SQLite::Statement update(database,
+                             "UPDATE jobs SET lost_workers = lost_workers + 1 WHERE id = ?");
+    update.bind(1, std::string(id));
+    update.exec();
   });
 }
 

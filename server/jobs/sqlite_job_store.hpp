@@ -46,6 +46,7 @@ class SqliteJobStore final : public JobStore {
   [[nodiscard]] std::vector<Job> unfinished() override;
   [[nodiscard]] std::vector<Job> oldest_finished(std::size_t limit) override;
   std::optional<Job> apply(std::string_view id, JobEvent event, const JobChange& change) override;
+  void count_lost_worker(std::string_view id) override;
   bool erase(std::string_view id) override;
   [[nodiscard]] bool was_erased(std::string_view id) override;
   std::int64_t forget_erased(std::int64_t mark) override;

@@ -88,6 +88,10 @@ std::optional<Job> WatchedJobStore::apply(std::string_view id,
   return watched("apply", true, [&] { return store_->apply(id, event, change); });
 }
 
+void WatchedJobStore::count_lost_worker(std::string_view id) {
+  watched("count_lost_worker", true, [&] { store_->count_lost_worker(id); });
+}
+
 bool WatchedJobStore::erase(std::string_view id) {
   return watched("erase", true, [&] { return store_->erase(id); });
 }

@@ -78,11 +78,12 @@ TaskOutcome WorkerEngine::run_once(const RequestMessage& request, ExecutionConte
 
 Result<std::string> WorkerEngine::run_request(const RequestMessage& request,
                                               ExecutionContext& context) {
-  for (int tries = 1;; ++tries) {
+  for (int tries = request.job.lost_workers + 1;; ++tries) {
     TaskOutcome outcome = run_once(request, context);
-    const bool again =
-        outcome.end == EndKind::kOutside && tries < kMaxTries && !context.cancelled();
-    if (!again) return std::move(outcome.document);
+    const bool lost = outcome.end == EndKind::kOutside && !context.cancelled();
+    // Counted where it lasts: three tries are meant in all, not after each start of the server.
+    if (lost && request.job.on_lost_worker) request.job.on_lost_worker();
+    if (!lost || tries >= kMaxTries) return std::move(outcome.document);
     std::error_code ignored;
     std::filesystem::remove(request.job.cell, ignored);
     std::filesystem::remove(request.job.statistics, ignored);

@@ -113,6 +113,32 @@ class WorkersTest(unittest.TestCase):
         self.assert_works()
         self.assertEqual(self.ends("outside"), 3)
 
+    def test_killed_workers_are_counted_across_deaths_of_the_server_which_are_not(self):
+        self.start()
+        job_id = self.running(long_options())
+        killed = set()
+
+        def kill_worker():
+            self.server.reaches(job_id, "running")
+            victim = self.busy_worker(killed)
+            killed.add(victim)
+            os.kill(victim, signal.SIGKILL)
+
+        for _ in range(4):
+            killed.add(self.busy_worker(killed))
+            self.server.kill()
+            self.server.start({"SYMCELL_WORKER_FAULTS": FAULTS})
+            self.server.reaches(job_id, "running")
+        kill_worker()
+        kill_worker()
+        killed.add(self.busy_worker(killed))
+        self.server.kill()
+        self.server.start({"SYMCELL_WORKER_FAULTS": FAULTS})
+        kill_worker()
+        job = self.server.finished(job_id)
+        self.assertEqual(job["error"]["code"], "worker_crashed", job)
+        self.assertIn("SIGKILL", job["error"]["detail"])
+
     @without_sanitizer
     def test_the_memory_limit_is_told(self):
         self.start(worker_memory=200 << 20)

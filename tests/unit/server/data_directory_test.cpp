@@ -108,15 +108,52 @@ class DataDirectoryTest : public ::testing::Test {
   std::string cell_;
 };
 
+// The schema of the version that wrote no marker, word for word, with one finished job in it.
+constexpr const char* kFirstVersion = R"sql(
+CREATE TABLE jobs (
+  sequence INTEGER PRIMARY KEY AUTOINCREMENT,
+  id TEXT NOT NULL UNIQUE,
+  state TEXT NOT NULL,
+  created_ms INTEGER NOT NULL,
+  started_ms INTEGER,
+  finished_ms INTEGER,
+  model_format TEXT NOT NULL,
+  model_name TEXT NOT NULL,
+  options_json TEXT NOT NULL,
+  error_code TEXT NOT NULL DEFAULT '',
+  error_json TEXT NOT NULL DEFAULT '',
+  model_bytes INTEGER NOT NULL,
+  result_bytes INTEGER NOT NULL DEFAULT 0,
+  crashes INTEGER NOT NULL DEFAULT 0
+) STRICT;
+CREATE INDEX jobs_by_state ON jobs (state, sequence);
+CREATE TABLE idempotency_keys (
+  key TEXT PRIMARY KEY,
+  digest TEXT NOT NULL,
+  job_id TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE
+) STRICT;
+CREATE INDEX idempotency_keys_by_job ON idempotency_keys (job_id);
+PRAGMA user_version = 1;
+)sql";
+
 TEST_F(DataDirectoryTest, WhatTheVersionBeforeWroteIsAdopted) {
-  fs::remove(root() / "symcell-data");
+  for (const char* name : {"symcell-data", "jobs.sqlite"}) fs::remove(root() / name);
   {
-    // As that version left it.
-    SQLite::Database old((root() / "jobs.sqlite").string(), SQLite::OPEN_READWRITE);
-    old.exec("DROP TABLE properties; DROP TABLE erased; PRAGMA user_version = 1");
+    SQLite::Database old((root() / "jobs.sqlite").string(),
+                         SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    old.exec(kFirstVersion);
+    SQLite::Statement row(
+        old,
+        "INSERT INTO jobs (id, state, created_ms, started_ms, finished_ms, "
+        "model_format, model_name, options_json, model_bytes, result_bytes, "
+        "crashes) VALUES (?, 'succeeded', 1, 2, 3, 'pslg_json', '', '{}', ?, 9, 2)");
+    row.bind(1, id_);
+    row.bind(2, static_cast<std::int64_t>(square_json().size()));
+    row.exec();
   }
   service_.open();
   ASSERT_TRUE(service_.jobs->find(id_));
+  EXPECT_EQ(service_.jobs->find(id_)->finished_ms, 3);
   EXPECT_EQ(read_file(service_.jobs->files().cell(id_)), cell_);
   EXPECT_TRUE(fs::exists(root() / "symcell-data"));
   EXPECT_FALSE(fs::exists(root() / "quarantine"));

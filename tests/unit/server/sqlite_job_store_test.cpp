@@ -59,16 +59,16 @@ TEST_F(SqliteJobStoreTest, ForbiddenEventsChangeNothing) {
   EXPECT_EQ(store_.find("a")->state, JobState::kQueued);
 }
 
-TEST_F(SqliteJobStoreTest, CrashesAreCountedAcrossRequeues) {
+TEST_F(SqliteJobStoreTest, LostWorkersAreCountedAcrossRequeues) {
   store_.insert(new_job("a"), std::nullopt);
   for (int i = 1; i <= 2; ++i) {
     store_.apply("a", JobEvent::kStart, {.time_ms = 1});
-    EXPECT_EQ(store_.apply("a", JobEvent::kRequeue, {.time_ms = 1, .crashed = true})->crashes, i);
+    store_.count_lost_worker("a");
+    const auto requeued = store_.apply("a", JobEvent::kRequeue, {.time_ms = 1});
+    EXPECT_EQ(requeued->lost_workers, i);
+    EXPECT_FALSE(requeued->started_ms);
   }
-  store_.apply("a", JobEvent::kStart, {.time_ms = 1});
-  const auto orderly = store_.apply("a", JobEvent::kRequeue, {.time_ms = 1});
-  EXPECT_EQ(orderly->crashes, 2);
-  EXPECT_FALSE(orderly->started_ms);
+  EXPECT_EQ(store_.find("a")->lost_workers, 2);
 }
 
 TEST_F(SqliteJobStoreTest, TheSameKeyGivesTheSameJobOrAConflict) {
