@@ -92,6 +92,7 @@ class JobStore {
   [[nodiscard]] virtual bool was_erased(std::string_view id) = 0;
   // Forgets those erased up to the mark, of which no files are left; returns the mark of now.
   virtual std::int64_t forget_erased(std::int64_t mark) = 0;
+  // Never waits and never fails.
   [[nodiscard]] virtual StoreTotals totals() = 0;
   // Throws if the database cannot be read or written, or does not answer at once.
   virtual void check_health() = 0;

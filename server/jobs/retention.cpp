@@ -28,8 +28,9 @@ std::size_t apply_retention(const RetentionRules& rules,
   std::size_t removed = 0;
   StoreTotals totals = store.totals();
   std::int64_t finished = finished_count(totals);
-  while (true) {
-    const auto oldest = store.oldest_finished(kBatch);
+  // Most often there is nothing to remove, and the oldest one shows it.
+  for (std::size_t batch = 1;; batch = kBatch) {
+    const auto oldest = store.oldest_finished(batch);
     if (oldest.empty()) return removed;
     for (const Job& job : oldest) {
       const std::int64_t age_ms = time_ms - job.finished_ms.value_or(time_ms);

@@ -53,6 +53,9 @@ CREATE TABLE erased (id TEXT PRIMARY KEY) STRICT;
 ALTER TABLE jobs RENAME COLUMN crashes TO lost_workers;
 UPDATE jobs SET lost_workers = 0 WHERE lost_workers <> 0;
 )sql",
+    R"sql(
+CREATE INDEX jobs_by_end ON jobs (finished_ms, sequence) WHERE finished_ms IS NOT NULL;
+)sql",
 };
 
 // How long a statement waits for another process that holds the database, a backup for instance.
@@ -64,7 +67,6 @@ constexpr std::chrono::milliseconds kHealthPatience{250};
 constexpr const char* kColumns =
     "sequence, id, state, created_ms, started_ms, finished_ms, model_format, model_name, "
     "options_json, error_code, error_json, model_bytes, result_bytes, lost_workers";
-constexpr const char* kFinished = "('succeeded', 'failed', 'cancelled')";
 
 std::string format_name(ModelFormat format) {
   return std::string(model_format_info(format).name);
@@ -204,6 +206,7 @@ struct SqliteJobStore::Impl {
     database.exec("PRAGMA synchronous = FULL");
     database.exec("PRAGMA foreign_keys = ON");
     migrate(database);
+    load_totals();
     if (directory_id.empty()) return;
     SQLite::Statement name(
         database, "INSERT OR IGNORE INTO properties (name, value) VALUES ('directory_id', ?)");
@@ -223,6 +226,30 @@ struct SqliteJobStore::Impl {
     const std::lock_guard lock(reading);
     return translated([&] { return work(reader); });
   }
+
+  // Counted once, and from then on with every change: a count over all jobs for every job that comes
+  // would cost the more the more are stored.
+  void load_totals() {
+    SQLite::Statement query(database,
+                            "SELECT state, COUNT(*), SUM(model_bytes + result_bytes) FROM jobs "
+                            "GROUP BY state");
+    while (query.executeStep()) {
+      const auto state = job_state_from_name(query.getColumn(0).getString());
+      if (!state) throw std::runtime_error("the job database holds an unknown state");
+      totals.by_state[static_cast<std::size_t>(*state)] = query.getColumn(1).getInt64();
+      totals.bytes += query.getColumn(2).getInt64();
+    }
+  }
+
+  // `bytes`: of model and results.
+  void count(JobState state, std::int64_t jobs, std::int64_t bytes) {
+    const std::lock_guard lock(counting);
+    totals.by_state[static_cast<std::size_t>(state)] += jobs;
+    totals.bytes += bytes;
+  }
+
+  std::mutex counting;  // guards `totals`
+  StoreTotals totals;
 
   std::timed_mutex writing;  // guards `database`
   SQLite::Database database;
@@ -283,6 +310,7 @@ InsertOutcome SqliteJobStore::insert(const Job& job, const std::optional<Idempot
       remember.exec();
     }
     transaction.commit();
+    impl_->count(job.state, 1, job.model_bytes);
     return {InsertResult::kInserted, stored};
   });
 }
@@ -319,8 +347,10 @@ std::vector<Job> SqliteJobStore::unfinished() {
 std::vector<Job> SqliteJobStore::oldest_finished(std::size_t limit) {
   return impl_->read([&](SQLite::Database& database) {
     SQLite::Statement query(
-        database, std::string("SELECT ") + kColumns + " FROM jobs WHERE state IN " + kFinished +
-                      " ORDER BY finished_ms, sequence LIMIT " + std::to_string(limit));
+        database,
+        std::string("SELECT ") + kColumns +
+            " FROM jobs WHERE finished_ms IS NOT NULL ORDER BY finished_ms, sequence LIMIT " +
+            std::to_string(limit));
     return read_jobs(query);
   });
 }
@@ -334,6 +364,8 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
     if (!job) return std::nullopt;
     const auto next = next_state(job->state, event);
     if (!next) return std::nullopt;
+    const JobState state_before = job->state;
+    const std::int64_t bytes_before = job->result_bytes;
     job->state = *next;
     if (event == JobEvent::kStart) job->started_ms = change.time_ms;
     if (event == JobEvent::kRequeue) job->started_ms.reset();
@@ -354,6 +386,8 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
     update.bind(7, job->id);
     update.exec();
     transaction.commit();
+    impl_->count(state_before, -1, 0);
+    impl_->count(job->state, 1, job->result_bytes - bytes_before);
     return job;
   });
 }
@@ -370,13 +404,16 @@ void SqliteJobStore::count_lost_worker(std::string_view id) {
 bool SqliteJobStore::erase(std::string_view id) {
   return impl_->write([&](SQLite::Database& database) {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    const auto job = Impl::find(database, id);
+    if (!job) return false;
     SQLite::Statement erase(database, "DELETE FROM jobs WHERE id = ?");
     erase.bind(1, std::string(id));
-    if (erase.exec() == 0) return false;
+    erase.exec();
     SQLite::Statement remember(database, "INSERT OR IGNORE INTO erased (id) VALUES (?)");
     remember.bind(1, std::string(id));
     remember.exec();
     transaction.commit();
+    impl_->count(job->state, -1, -(job->model_bytes + job->result_bytes));
     return true;
   });
 }
@@ -399,19 +436,8 @@ std::int64_t SqliteJobStore::forget_erased(std::int64_t mark) {
 }
 
 StoreTotals SqliteJobStore::totals() {
-  return impl_->read([&](SQLite::Database& database) {
-    StoreTotals totals;
-    SQLite::Statement query(database,
-                            "SELECT state, COUNT(*), SUM(model_bytes + result_bytes) FROM jobs "
-                            "GROUP BY state");
-    while (query.executeStep()) {
-      if (const auto state = job_state_from_name(query.getColumn(0).getString())) {
-        totals.by_state[static_cast<std::size_t>(*state)] = query.getColumn(1).getInt64();
-      }
-      totals.bytes += query.getColumn(2).getInt64();
-    }
-    return totals;
-  });
+  const std::lock_guard lock(impl_->counting);
+  return impl_->totals;
 }
 
 void SqliteJobStore::check_health() {

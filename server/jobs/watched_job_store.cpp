@@ -105,7 +105,7 @@ std::int64_t WatchedJobStore::forget_erased(std::int64_t mark) {
 }
 
 StoreTotals WatchedJobStore::totals() {
-  return watched("totals", false, [&] { return store_->totals(); });
+  return store_->totals();
 }
 
 void WatchedJobStore::check_health() {
