@@ -39,6 +39,7 @@ struct Job {
   std::int64_t created_ms = 0;
   std::optional<std::int64_t> started_ms;
   std::optional<std::int64_t> finished_ms;
+  std::optional<std::int64_t> finished_clock_ms;  // by JobStore::clock_ms
 
   ModelFormat model_format = ModelFormat::kPslgJson;
   std::string model_name;    // of the uploaded file, may be empty

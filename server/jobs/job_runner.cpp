@@ -226,6 +226,7 @@ void JobRunner::execute(const std::string& id, Running& running) {
       persist(id, [&] { job = parts_.store.apply(id, JobEvent::kStart, {.time_ms = now_ms()}); });
   if (!asked) return;  // the row says queued: the next start takes it up
   if (!job) return;    // deleted between the queue and here
+  running.started_steady_ms = steady_ms();
   parts_.logger.info("job_started", {{"job", id}});
   parts_.changes.notify();
 
@@ -280,7 +281,9 @@ void JobRunner::keep_fault(const Job& job, const Error& error) {
 }
 
 void JobRunner::settle(const Job& job, Running& running, const Result<void>& result) {
-  JobChange change{.time_ms = now_ms()};
+  // By a clock that nobody sets.
+  const std::int64_t took_ms = steady_ms() - running.started_steady_ms;
+  JobChange change{.time_ms = job.started_ms.value_or(0) + took_ms};
   JobEvent event = JobEvent::kSucceed;
   if (result) {
     change.result_bytes =
@@ -303,7 +306,7 @@ void JobRunner::settle(const Job& job, Running& running, const Result<void>& res
     return;
   }
   if (!settled) return;  // deleted while it ran
-  const double seconds = static_cast<double>(change.time_ms - job.started_ms.value_or(0)) / 1000;
+  const double seconds = static_cast<double>(took_ms) / 1000;
   const std::string_view state = job_state_name(settled->state);
   parts_.logger.info(event == JobEvent::kRequeue ? "job_requeued" : "job_finished",
                      {{"job", job.id},

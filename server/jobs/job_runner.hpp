@@ -76,7 +76,8 @@ class JobRunner {
  private:
   struct Running {
     ExecutionContext context;
-    std::atomic<bool> requeue{false};  // cancelled because the server stops, not by the user
+    std::int64_t started_steady_ms = 0;  // of the worker's thread
+    std::atomic<bool> requeue{false};    // cancelled because the server stops, not by the user
   };
 
   void post();

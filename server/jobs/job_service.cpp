@@ -73,7 +73,7 @@ void JobService::start() {
         return store_->was_erased(id) ? Fate::kRemove : Fate::kUnknown;
       },
       [this](const std::string& id) { files_.remove(id); });
-  store_->forget_erased(std::numeric_limits<std::int64_t>::max());
+  store_->tidy(std::numeric_limits<std::int64_t>::max());
   for (const Job& job : store_->unfinished()) recover(job);
   retention_ = std::make_unique<RetentionKeeper>(limits_.retention, *store_, files_, logger_);
 }

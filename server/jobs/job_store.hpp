@@ -53,6 +53,8 @@ struct JobFilter {
 
 // What a transition writes besides the state.
 struct JobChange {
+  // By the machine's clock. Where that was set back, a job starts no earlier than it came and ends
+  // no earlier than it started.
   std::int64_t time_ms = 0;
   std::string error_code = {};
   std::string error_json = {};
@@ -90,8 +92,13 @@ class JobStore {
   // Files may outlive their job if the server dies before it has removed them: whether a job was
   // erased tells them from files that the database never heard of.
   [[nodiscard]] virtual bool was_erased(std::string_view id) = 0;
-  // Forgets those erased up to the mark, of which no files are left; returns the mark of now.
-  virtual std::int64_t forget_erased(std::int64_t mark) = 0;
+  // Forgets those erased up to the mark, of which no files are left, and notes the clock. Returns the
+  // mark of now. To be called now and then.
+  virtual std::int64_t tidy(std::int64_t mark) = 0;
+  // Milliseconds of a clock by which ages are measured. It goes on from start to start and never
+  // jumps, whatever is done to the machine's: a start counts the time since the last note as the
+  // machine's clock has it, but not below zero and for a day at most.
+  [[nodiscard]] virtual std::int64_t clock_ms() = 0;
   // Never waits and never fails.
   [[nodiscard]] virtual StoreTotals totals() = 0;
   // Throws if the database cannot be read or written, or does not answer at once.

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <limits>
@@ -56,17 +57,28 @@ UPDATE jobs SET lost_workers = 0 WHERE lost_workers <> 0;
     R"sql(
 CREATE INDEX jobs_by_end ON jobs (finished_ms, sequence) WHERE finished_ms IS NOT NULL;
 )sql",
+    R"sql(
+ALTER TABLE jobs ADD COLUMN finished_clock_ms INTEGER;
+UPDATE jobs SET finished_clock_ms = finished_ms;
+DROP INDEX jobs_by_end;
+CREATE INDEX jobs_by_end ON jobs (finished_clock_ms, sequence) WHERE finished_clock_ms IS NOT NULL;
+)sql",
 };
 
 // How long a statement waits for another process that holds the database, a backup for instance.
 // Whoever must not fail for it asks again.
 constexpr int kBusyPatienceMs = 2000;
+// Most that the clock of the store goes on between two servers. A machine whose clock was set a month
+// ahead would else take every job for a month old; so jobs of a server that was down for longer are
+// kept for longer.
+constexpr std::int64_t kMostDownMs = std::int64_t{24} * 3600 * 1000;
 // How long a look at the store's health waits for those that write.
 constexpr std::chrono::milliseconds kHealthPatience{250};
 
 constexpr const char* kColumns =
     "sequence, id, state, created_ms, started_ms, finished_ms, model_format, model_name, "
-    "options_json, error_code, error_json, model_bytes, result_bytes, lost_workers";
+    "options_json, error_code, error_json, model_bytes, result_bytes, lost_workers, "
+    "finished_clock_ms";
 
 std::string format_name(ModelFormat format) {
   return std::string(model_format_info(format).name);
@@ -100,6 +112,7 @@ Job read_job(SQLite::Statement& row) {
   job.model_bytes = row.getColumn(11).getInt64();
   job.result_bytes = row.getColumn(12).getInt64();
   job.lost_workers = row.getColumn(13).getInt();
+  job.finished_clock_ms = optional_time(row.getColumn(14));
   return job;
 }
 
@@ -196,8 +209,9 @@ DatabaseFinding examine_job_database(const std::filesystem::path& file) {
 }
 
 struct SqliteJobStore::Impl {
-  Impl(const std::filesystem::path& file, const std::string& directory_id)
-      : database(create_for_owner(file).string(), SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW),
+  Impl(const std::filesystem::path& file, const std::string& directory_id, MachineClocks machine)
+      : clocks(std::move(machine)),
+        database(create_for_owner(file).string(), SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW),
         reader(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW) {
     reader.setBusyTimeout(kBusyPatienceMs);
     database.setBusyTimeout(kBusyPatienceMs);
@@ -207,6 +221,7 @@ struct SqliteJobStore::Impl {
     database.exec("PRAGMA foreign_keys = ON");
     migrate(database);
     load_totals();
+    start_clock();
     if (directory_id.empty()) return;
     SQLite::Statement name(
         database, "INSERT OR IGNORE INTO properties (name, value) VALUES ('directory_id', ?)");
@@ -226,6 +241,46 @@ struct SqliteJobStore::Impl {
     const std::lock_guard lock(reading);
     return translated([&] { return work(reader); });
   }
+
+  void set_property(const char* name, std::int64_t value) {
+    SQLite::Statement set(database,
+                          "INSERT INTO properties (name, value) VALUES (?, ?) "
+                          "ON CONFLICT (name) DO UPDATE SET value = excluded.value");
+    set.bind(1, name);
+    set.bind(2, std::to_string(value));
+    set.exec();
+  }
+
+  [[nodiscard]] std::optional<std::int64_t> property(const char* name) {
+    SQLite::Statement query(database,
+                            "SELECT CAST(value AS INTEGER) FROM properties WHERE name = ?");
+    query.bind(1, name);
+    if (!query.executeStep()) return std::nullopt;
+    return query.getColumn(0).getInt64();
+  }
+
+  void start_clock() {
+    const auto noted = property("clock_ms");
+    const auto wall = property("clock_noted_at_ms");
+    const std::int64_t now = clocks.wall();
+    const std::int64_t down = wall ? std::clamp<std::int64_t>(now - *wall, 0, kMostDownMs) : 0;
+    clock_base = noted ? *noted + down : now;
+    steady_base = clocks.steady();
+    note_clock();
+  }
+
+  [[nodiscard]] std::int64_t clock_ms() const {
+    return clock_base + (clocks.steady() - steady_base);
+  }
+
+  void note_clock() {
+    set_property("clock_ms", clock_ms());
+    set_property("clock_noted_at_ms", clocks.wall());
+  }
+
+  const MachineClocks clocks;
+  std::int64_t clock_base = 0;  // at steady_base
+  std::int64_t steady_base = 0;
 
   // Counted once, and from then on with every change: a count over all jobs for every job that comes
   // would cost the more the more are stored.
@@ -276,8 +331,10 @@ struct SqliteJobStore::Impl {
   }
 };
 
-SqliteJobStore::SqliteJobStore(const std::filesystem::path& file, const std::string& directory_id)
-    : impl_(std::make_unique<Impl>(file, directory_id)) {
+SqliteJobStore::SqliteJobStore(const std::filesystem::path& file,
+                               const std::string& directory_id,
+                               MachineClocks clocks)
+    : impl_(std::make_unique<Impl>(file, directory_id, std::move(clocks))) {
 }
 
 SqliteJobStore::~SqliteJobStore() = default;
@@ -346,11 +403,10 @@ std::vector<Job> SqliteJobStore::unfinished() {
 
 std::vector<Job> SqliteJobStore::oldest_finished(std::size_t limit) {
   return impl_->read([&](SQLite::Database& database) {
-    SQLite::Statement query(
-        database,
-        std::string("SELECT ") + kColumns +
-            " FROM jobs WHERE finished_ms IS NOT NULL ORDER BY finished_ms, sequence LIMIT " +
-            std::to_string(limit));
+    SQLite::Statement query(database, std::string("SELECT ") + kColumns +
+                                          " FROM jobs WHERE finished_clock_ms IS NOT NULL ORDER BY "
+                                          "finished_clock_ms, sequence LIMIT " +
+                                          std::to_string(limit));
     return read_jobs(query);
   });
 }
@@ -367,23 +423,28 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
     const JobState state_before = job->state;
     const std::int64_t bytes_before = job->result_bytes;
     job->state = *next;
-    if (event == JobEvent::kStart) job->started_ms = change.time_ms;
+    if (event == JobEvent::kStart) job->started_ms = std::max(change.time_ms, job->created_ms);
     if (event == JobEvent::kRequeue) job->started_ms.reset();
-    if (is_finished(*next)) job->finished_ms = change.time_ms;
+    if (is_finished(*next)) {
+      job->finished_ms = std::max(change.time_ms, job->started_ms.value_or(job->created_ms));
+      job->finished_clock_ms = impl_->clock_ms();
+    }
     job->error_code = change.error_code;
     job->error_json = change.error_json;
     job->result_bytes = change.result_bytes;
 
     SQLite::Statement update(database,
                              "UPDATE jobs SET state = ?, started_ms = ?, finished_ms = ?, "
-                             "error_code = ?, error_json = ?, result_bytes = ? WHERE id = ?");
+                             "error_code = ?, error_json = ?, result_bytes = ?, "
+                             "finished_clock_ms = ? WHERE id = ?");
     update.bind(1, std::string(job_state_name(job->state)));
     if (job->started_ms) update.bind(2, *job->started_ms);
     if (job->finished_ms) update.bind(3, *job->finished_ms);
     update.bind(4, job->error_code);
     update.bind(5, job->error_json);
     update.bind(6, job->result_bytes);
-    update.bind(7, job->id);
+    if (job->finished_clock_ms) update.bind(7, *job->finished_clock_ms);
+    update.bind(8, job->id);
     update.exec();
     transaction.commit();
     impl_->count(state_before, -1, 0);
@@ -426,13 +487,22 @@ bool SqliteJobStore::was_erased(std::string_view id) {
   });
 }
 
-std::int64_t SqliteJobStore::forget_erased(std::int64_t mark) {
+std::int64_t SqliteJobStore::tidy(std::int64_t mark) {
   return impl_->write([&](SQLite::Database& database) {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
     SQLite::Statement forget(database, "DELETE FROM erased WHERE rowid <= ?");
     forget.bind(1, mark);
     forget.exec();
-    return database.execAndGet("SELECT COALESCE(MAX(rowid), 0) FROM erased").getInt64();
+    impl_->note_clock();
+    const std::int64_t newest =
+        database.execAndGet("SELECT COALESCE(MAX(rowid), 0) FROM erased").getInt64();
+    transaction.commit();
+    return newest;
   });
+}
+
+std::int64_t SqliteJobStore::clock_ms() {
+  return impl_->clock_ms();
 }
 
 StoreTotals SqliteJobStore::totals() {

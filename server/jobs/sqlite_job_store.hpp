@@ -6,9 +6,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
+#include "server/base/clock.hpp"
 #include "server/jobs/job_store.hpp"
 
 namespace symcell::server {
@@ -31,12 +33,20 @@ struct DatabaseFinding {
 // rights, a symbolic link, an error of the disk), which says nothing about its contents.
 [[nodiscard]] DatabaseFinding examine_job_database(const std::filesystem::path& file);
 
+// The machine's clocks, in milliseconds; tests have their own.
+struct MachineClocks {
+  std::function<std::int64_t()> wall = now_ms;
+  std::function<std::int64_t()> steady = steady_ms;
+};
+
 class SqliteJobStore final : public JobStore {
  public:
   // Creates the file, for its owner alone, if it is missing.  `directory_id`: written to a database
   // that has none.  Throws std::runtime_error if the file is no database of ours or of a newer
   // version.
-  explicit SqliteJobStore(const std::filesystem::path& file, const std::string& directory_id = {});
+  explicit SqliteJobStore(const std::filesystem::path& file,
+                          const std::string& directory_id = {},
+                          MachineClocks clocks = {});
   ~SqliteJobStore() override;
 
   InsertOutcome insert(const Job& job, const std::optional<IdempotencyKey>& key) override;
@@ -49,7 +59,8 @@ class SqliteJobStore final : public JobStore {
   void count_lost_worker(std::string_view id) override;
   bool erase(std::string_view id) override;
   [[nodiscard]] bool was_erased(std::string_view id) override;
-  std::int64_t forget_erased(std::int64_t mark) override;
+  std::int64_t tidy(std::int64_t mark) override;
+  [[nodiscard]] std::int64_t clock_ms() override;
   [[nodiscard]] StoreTotals totals() override;
   void check_health() override;
 

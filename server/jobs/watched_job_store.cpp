@@ -100,8 +100,12 @@ bool WatchedJobStore::was_erased(std::string_view id) {
   return watched("was_erased", false, [&] { return store_->was_erased(id); });
 }
 
-std::int64_t WatchedJobStore::forget_erased(std::int64_t mark) {
-  return watched("forget_erased", true, [&] { return store_->forget_erased(mark); });
+std::int64_t WatchedJobStore::tidy(std::int64_t mark) {
+  return watched("tidy", true, [&] { return store_->tidy(mark); });
+}
+
+std::int64_t WatchedJobStore::clock_ms() {
+  return store_->clock_ms();
 }
 
 StoreTotals WatchedJobStore::totals() {

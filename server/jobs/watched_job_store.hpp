@@ -27,7 +27,8 @@ class WatchedJobStore final : public JobStore {
   void count_lost_worker(std::string_view id) override;
   bool erase(std::string_view id) override;
   [[nodiscard]] bool was_erased(std::string_view id) override;
-  std::int64_t forget_erased(std::int64_t mark) override;
+  std::int64_t tidy(std::int64_t mark) override;
+  [[nodiscard]] std::int64_t clock_ms() override;
   [[nodiscard]] StoreTotals totals() override;
   // Asks the store at most every few seconds while it works, and every time while it fails.
   void check_health() override;

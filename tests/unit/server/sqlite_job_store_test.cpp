@@ -157,7 +157,8 @@ TEST_F(SqliteJobStoreTest, NothingScansTheTable) {
   for (const char* statement :
        {"SELECT * FROM jobs WHERE id = 'a'", "DELETE FROM jobs WHERE id = 'a'",
         "UPDATE jobs SET state = 'x' WHERE id = 'a'",
-        "SELECT * FROM jobs WHERE finished_ms IS NOT NULL ORDER BY finished_ms, sequence LIMIT 9",
+        "SELECT * FROM jobs WHERE finished_clock_ms IS NOT NULL ORDER BY finished_clock_ms, "
+        "sequence LIMIT 9",
         "SELECT * FROM jobs WHERE sequence < 9 AND state = 'x' ORDER BY sequence DESC LIMIT 9",
         "SELECT * FROM jobs WHERE sequence < 9 ORDER BY sequence DESC LIMIT 9",
         "SELECT 1 FROM erased WHERE id = 'a'",
