@@ -48,6 +48,8 @@ constexpr std::array kTable{
     ServiceProblemRow{ServiceProblem::kStorageFull, 507, "storage_full",
                       "The server has no room for the job"},
     ServiceProblemRow{ServiceProblem::kInternal, 500, "internal", "Internal error"},
+    ServiceProblemRow{ServiceProblem::kStoredFileDamaged, 500, "stored_file_damaged",
+                      "A stored file is damaged"},
 };
 
 bool worth_retrying(int status) {
@@ -68,7 +70,9 @@ std::span<const ServiceProblemRow> service_problem_table() {
 
 const ServiceProblemRow& service_problem_row(ServiceProblem problem) {
   const auto* row = std::ranges::find(kTable, problem, &ServiceProblemRow::problem);
-  return row != kTable.end() ? *row : kTable.back();
+  return row != kTable.end()
+             ? *row
+             : *std::ranges::find(kTable, ServiceProblem::kInternal, &ServiceProblemRow::problem);
 }
 
 ServiceProblem service_problem_for_status(int status) {

@@ -36,6 +36,7 @@ enum class ServiceProblem : std::uint8_t {
   kStoreUnavailable,
   kStorageFull,
   kInternal,
+  kStoredFileDamaged,
 };
 
 struct ServiceProblemRow {

@@ -9,6 +9,7 @@
 #include "server/http/call.hpp"
 #include "server/http/problem_response.hpp"
 #include "server/jobs/job_store.hpp"
+#include "server/jobs/stored_files.hpp"
 
 namespace symcell::server {
 namespace {
@@ -101,6 +102,12 @@ void Router::run(const Route& route, Call& call) const {
       respond_problem(call, ServiceProblem::kStoreUnavailable,
                       "the job store does not answer at present; try again soon");
     }
+    return;
+  } catch (const StoredFileDamaged& damaged) {
+    logger_.error("stored_file_damaged", {{"route", route.path}, {"what", damaged.what()}});
+    metrics_.count("symcell_internal_errors_total", {{"where", "stored_file"}});
+    respond_problem(call, ServiceProblem::kStoredFileDamaged,
+                    std::string(damaged.what()) + "; submit the job again");
     return;
   } catch (const std::system_error& error) {
     if (is_disk_full(error)) {

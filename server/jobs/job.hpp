@@ -48,6 +48,9 @@ struct Job {
   std::string error_code;  // name of the code; empty unless failed
   std::string error_json;  // problem document; empty unless failed
   std::int64_t model_bytes = 0;
+  // SHA-256 of the stored files; empty where an earlier version took none. A cell carries its own.
+  std::string model_sha256;
+  std::string statistics_sha256;
   std::int64_t result_bytes = 0;
   std::int32_t lost_workers = 0;  // how often a worker that ran this job was killed from outside
 };

@@ -14,6 +14,8 @@
 #include "core/base/assert.hpp"
 #include "server/base/clock.hpp"
 #include "server/base/files.hpp"
+#include "server/base/identifiers.hpp"
+#include "server/jobs/stored_files.hpp"
 
 namespace symcell::server {
 namespace {
@@ -262,6 +264,12 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
   running.context.set_time_limit(options->time_limit_s);
   running.context.set_max_elements(options->max_elements);
   SYMCELL_TRY(running.context.check());
+  try {
+    check_model(job, parts_.files);
+  } catch (const StoredFileDamaged& damaged) {
+    return fail(ErrorCode::kInternal,
+                std::string(damaged.what()) + "; the server's disk is at fault: submit it again");
+  }
   SYMCELL_TRY(parts_.engine.run(work, running.context));
   if (!publish(job.id)) {
     running.requeue = true;
@@ -288,6 +296,7 @@ void JobRunner::settle(const Job& job, Running& running, const Result<void>& res
   if (result) {
     change.result_bytes =
         file_bytes(parts_.files.cell(job.id)) + file_bytes(parts_.files.statistics(job.id));
+    change.statistics_sha256 = sha256_of_file(parts_.files.statistics(job.id));
   } else if (result.error().code == ErrorCode::kCancelled) {
     event = running.requeue ? JobEvent::kRequeue : JobEvent::kCancel;
   } else {

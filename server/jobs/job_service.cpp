@@ -154,6 +154,7 @@ SubmitOutcome JobService::store_reserved(const Submission& submission,
   job.model_name = submission.model_name;
   job.options_json = options_json;
   job.model_bytes = static_cast<std::int64_t>(std::filesystem::file_size(submission.model));
+  job.model_sha256 = sha256_of_file(submission.model);
   try {
     files_.adopt_model(submission.model, job.id);
     InsertOutcome inserted = store_->insert(job, key);

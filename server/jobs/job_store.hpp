@@ -59,6 +59,7 @@ struct JobChange {
   std::string error_code = {};
   std::string error_json = {};
   std::int64_t result_bytes = 0;
+  std::string statistics_sha256 = {};
 };
 
 struct StoreTotals {

@@ -63,6 +63,10 @@ UPDATE jobs SET finished_clock_ms = finished_ms;
 DROP INDEX jobs_by_end;
 CREATE INDEX jobs_by_end ON jobs (finished_clock_ms, sequence) WHERE finished_clock_ms IS NOT NULL;
 )sql",
+    R"sql(
+ALTER TABLE jobs ADD COLUMN model_sha256 TEXT NOT NULL DEFAULT '';
+ALTER TABLE jobs ADD COLUMN statistics_sha256 TEXT NOT NULL DEFAULT '';
+)sql",
 };
 
 // How long a statement waits for another process that holds the database, a backup for instance.
@@ -78,7 +82,7 @@ constexpr std::chrono::milliseconds kHealthPatience{250};
 constexpr const char* kColumns =
     "sequence, id, state, created_ms, started_ms, finished_ms, model_format, model_name, "
     "options_json, error_code, error_json, model_bytes, result_bytes, lost_workers, "
-    "finished_clock_ms";
+    "finished_clock_ms, model_sha256, statistics_sha256";
 
 std::string format_name(ModelFormat format) {
   return std::string(model_format_info(format).name);
@@ -113,6 +117,8 @@ Job read_job(SQLite::Statement& row) {
   job.result_bytes = row.getColumn(12).getInt64();
   job.lost_workers = row.getColumn(13).getInt();
   job.finished_clock_ms = optional_time(row.getColumn(14));
+  job.model_sha256 = row.getColumn(15).getString();
+  job.statistics_sha256 = row.getColumn(16).getString();
   return job;
 }
 
@@ -347,7 +353,8 @@ InsertOutcome SqliteJobStore::insert(const Job& job, const std::optional<Idempot
     }
     SQLite::Statement insert(database,
                              "INSERT INTO jobs (id, state, created_ms, model_format, model_name, "
-                             "options_json, model_bytes) VALUES (?, ?, ?, ?, ?, ?, ?)");
+                             "options_json, model_bytes, model_sha256) "
+                             "VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
     insert.bind(1, job.id);
     insert.bind(2, std::string(job_state_name(job.state)));
     insert.bind(3, job.created_ms);
@@ -355,6 +362,7 @@ InsertOutcome SqliteJobStore::insert(const Job& job, const std::optional<Idempot
     insert.bind(5, job.model_name);
     insert.bind(6, job.options_json);
     insert.bind(7, job.model_bytes);
+    insert.bind(8, job.model_sha256);
     insert.exec();
     Job stored = job;
     stored.sequence = database.getLastInsertRowid();
@@ -432,11 +440,12 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
     job->error_code = change.error_code;
     job->error_json = change.error_json;
     job->result_bytes = change.result_bytes;
+    job->statistics_sha256 = change.statistics_sha256;
 
     SQLite::Statement update(database,
                              "UPDATE jobs SET state = ?, started_ms = ?, finished_ms = ?, "
                              "error_code = ?, error_json = ?, result_bytes = ?, "
-                             "finished_clock_ms = ? WHERE id = ?");
+                             "finished_clock_ms = ?, statistics_sha256 = ? WHERE id = ?");
     update.bind(1, std::string(job_state_name(job->state)));
     if (job->started_ms) update.bind(2, *job->started_ms);
     if (job->finished_ms) update.bind(3, *job->finished_ms);
@@ -444,7 +453,8 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
     update.bind(5, job->error_json);
     update.bind(6, job->result_bytes);
     if (job->finished_clock_ms) update.bind(7, *job->finished_clock_ms);
-    update.bind(8, job->id);
+    update.bind(8, job->statistics_sha256);
+    update.bind(9, job->id);
     update.exec();
     transaction.commit();
     impl_->count(state_before, -1, 0);
