@@ -44,7 +44,10 @@ ConnectionStream::ConnectionStream(socket_t socket,
 }
 
 void ConnectionStream::begin_request() {
-  in_header_ = true;
+  buffer_.erase(0, begin_);
+  begin_ = 0;
+  head_left_ = 0;
+  guard_.reset();
   read_ = 0;
   written_ = 0;
   read_wait_ = {};
@@ -88,7 +91,7 @@ bool ConnectionStream::wait_within_limits(short events,
 }
 
 bool ConnectionStream::is_readable() const {
-  return begin_ < end_ || poll_one(socket_, POLLIN, milliseconds(0)) > 0;
+  return begin_ < buffer_.size() || poll_one(socket_, POLLIN, milliseconds(0)) > 0;
 }
 
 bool ConnectionStream::is_writable() const {
@@ -97,19 +100,48 @@ bool ConnectionStream::is_writable() const {
   return (entry.revents & (POLLERR | POLLHUP)) == 0;
 }
 
-ssize_t ConnectionStream::read(char* ptr, size_t size) {
-  if (in_header_ && read_ >= limits_.max_header_bytes) return -1;
-  if (begin_ == end_) {
-    if (!wait_within_limits(POLLIN, read_, read_wait_)) return -1;
-    const ssize_t n = ::recv(socket_, buffer_.data(), buffer_.size(), 0);
-    if (n <= 0) return n;
+bool ConnectionStream::receive_more() {
+  if (!wait_within_limits(POLLIN, read_, read_wait_)) return false;
+  std::array<char, 16384> piece;
+  const ssize_t n = ::recv(socket_, piece.data(), piece.size(), 0);
+  if (n <= 0) return false;
+  if (begin_ == buffer_.size()) {
+    buffer_.clear();
     begin_ = 0;
-    end_ = static_cast<std::size_t>(n);
   }
-  const std::size_t n = std::min(size, end_ - begin_);
+  buffer_.append(piece.data(), static_cast<std::size_t>(n));
+  read_ += static_cast<std::uint64_t>(n);
+  return true;
+}
+
+ConnectionStream::Head ConnectionStream::read_head(HeadReader& reader) {
+  while (!reader.add(std::string_view(buffer_).substr(begin_))) {
+    if (buffer_.size() - begin_ >= limits_.max_header_bytes) return Head::kTooLong;
+    if (!receive_more()) return Head::kGone;
+  }
+  if (reader.fault().status != 0) return Head::kFaulty;
+  if (reader.length() > limits_.max_header_bytes) return Head::kTooLong;
+  head_left_ = reader.length();
+  // Empty lines before a request: httplib takes them for one.
+  while (buffer_.compare(begin_, 2, "\r\n") == 0) {
+    begin_ += 2;
+    head_left_ -= 2;
+  }
+  if (reader.head().chunked) guard_.emplace();
+  return Head::kWhole;
+}
+
+ssize_t ConnectionStream::read(char* ptr, size_t size) {
+  if (begin_ == buffer_.size() && !receive_more()) return -1;
+  const std::size_t most = head_left_ > 0 ? std::min(size, head_left_) : size;
+  const std::size_t n = std::min(most, buffer_.size() - begin_);
   std::memcpy(ptr, buffer_.data() + begin_, n);
+  if (head_left_ > 0) {
+    head_left_ -= n;
+  } else if (guard_ && !guard_->pass({ptr, n})) {
+    return -1;
+  }
   begin_ += n;
-  read_ += n;
   return static_cast<ssize_t>(n);
 }
 
@@ -146,17 +178,26 @@ void ConnectionStream::get_local_ip_and_port(std::string& ip, int& port) const {
 
 void ConnectionStream::discard_arrived() {
   ::shutdown(socket_, SHUT_WR);
-  static_cast<void>(::recv(socket_, buffer_.data(), buffer_.size(), MSG_DONTWAIT));
+  std::array<char, 16384> piece;
+  static_cast<void>(::recv(socket_, piece.data(), piece.size(), MSG_DONTWAIT));
 }
 
 void ConnectionStream::close_gently() {
-  constexpr std::size_t kMostBytes = 64UL << 20U;
-  const auto deadline = Clock::now() + std::chrono::seconds(2);
+  // Many clients send all of a body before they look for an answer. One that keeps sending at a good
+  // pace is heard out, for some time; who trickles is not.
+  constexpr std::size_t kMostBytes = std::size_t{4} << 30U;
+  constexpr milliseconds kPatience{2000};
+  constexpr milliseconds kMostTime{30'000};
+  constexpr std::size_t kBytesPerMillisecond = 8192;
+  const auto start = Clock::now();
   ::shutdown(socket_, SHUT_WR);
+  std::array<char, 65536> piece;
   for (std::size_t total = 0; total < kMostBytes;) {
+    const milliseconds granted = kPatience + milliseconds(total / kBytesPerMillisecond);
+    const auto deadline = start + std::min(granted, kMostTime);
     const auto left = std::chrono::duration_cast<milliseconds>(deadline - Clock::now());
     if (left.count() <= 0 || wait_readable(left) != Wait::kReady) return;
-    const ssize_t n = ::recv(socket_, buffer_.data(), buffer_.size(), 0);
+    const ssize_t n = ::recv(socket_, piece.data(), piece.size(), 0);
     if (n <= 0) return;
     total += static_cast<std::size_t>(n);
   }

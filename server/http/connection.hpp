@@ -8,8 +8,10 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "server/http/request_head.hpp"
 #include "server/http/stop_signal.hpp"
 
 namespace symcell::server {
@@ -21,7 +23,8 @@ struct ConnectionLimits {
   std::size_t max_header_bytes = 64UL * 1024;    // request line and headers together
 };
 
-// A socket as httplib wants it. Reads are buffered. Only time spent waiting for the peer counts
+// A socket as httplib wants it. Reads are buffered, and what httplib reads has been looked at: the
+// head as a whole before its first byte is handed over, a chunked body on its way. Only time spent waiting for the peer counts
 // against it, so a slow producer on our side is not the client's fault.
 class ConnectionStream final : public httplib::Stream {
  public:
@@ -33,7 +36,7 @@ class ConnectionStream final : public httplib::Stream {
   // elsewhere.
   template <class GiveUp>
   [[nodiscard]] bool wait_for_request(std::chrono::milliseconds idle, const GiveUp& give_up) {
-    if (begin_ < end_) return true;
+    if (begin_ < buffer_.size()) return true;
     constexpr std::chrono::milliseconds kTick{100};
     constexpr std::chrono::milliseconds kLeast{900};
     for (std::chrono::milliseconds waited{0}; waited < idle; waited += kTick) {
@@ -44,8 +47,9 @@ class ConnectionStream final : public httplib::Stream {
     return false;
   }
   void begin_request();
-  // The headers have been read: their limit no longer applies.
-  void begin_body() { in_header_ = false; }
+  enum class Head : std::uint8_t { kWhole, kFaulty, kTooLong, kGone };
+  // Waits for the head of a request. kGone: the client is, or was too slow, or the server stops.
+  [[nodiscard]] Head read_head(HeadReader& reader);
   [[nodiscard]] std::uint64_t bytes_written() const { return written_; }
   // Tells the peer that no more will come and reads away what it still sends, for a while: closing
   // with unread data would destroy the answer on its way.
@@ -75,12 +79,15 @@ class ConnectionStream final : public httplib::Stream {
   socket_t socket_;
   const StopSignal& stop_;
   ConnectionLimits limits_;
-  std::array<char, 16384> buffer_{};
-  std::size_t begin_ = 0;  // unread bytes of buffer_: [begin_, end_)
-  std::size_t end_ = 0;
-  bool in_header_ = true;
-  std::uint64_t read_ = 0;     // of this request
-  std::uint64_t written_ = 0;  // of this response
+  // False: the end, an error, or no patience left.
+  [[nodiscard]] bool receive_more();
+
+  std::string buffer_;
+  std::size_t begin_ = 0;                 // unread bytes of buffer_ begin here
+  std::size_t head_left_ = 0;             // of the head, not yet read by httplib
+  std::optional<ChunkGuard> guard_ = {};  // of a chunked body
+  std::uint64_t read_ = 0;                // of this request
+  std::uint64_t written_ = 0;             // of this response
   std::chrono::nanoseconds read_wait_{0};
   std::chrono::nanoseconds write_wait_{0};
 };

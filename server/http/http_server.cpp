@@ -44,25 +44,6 @@ std::string take_header(httplib::Request& request, const char* name) {
   return value;
 }
 
-bool is_number(const std::string& text) {
-  return !text.empty() && text.size() < 19 &&
-         std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
-}
-
-// Empty: the framing is sound. Two readings of where a body ends let requests be smuggled through
-// proxies, so anything but one length or plain chunks is refused.
-std::string framing_fault(const httplib::Request& request) {
-  const std::size_t lengths = request.get_header_value_count("Content-Length");
-  const std::size_t codings = request.get_header_value_count("Transfer-Encoding");
-  if (lengths > 1 || codings > 1 || (lengths == 1 && codings == 1)) {
-    return "give either one Content-Length or one Transfer-Encoding";
-  }
-  if (lengths == 1 && !is_number(request.get_header_value("Content-Length"))) {
-    return "Content-Length is not a number";
-  }
-  return {};
-}
-
 }  // namespace
 
 class HttpServer::Impl final : public httplib::Server {
@@ -188,13 +169,7 @@ class HttpServer::Impl final : public httplib::Server {
     Exchange& exchange = *current_exchange;
     Call call{request, response, reader, exchange, {}, {}};
     response.status = 200;
-    const std::string fault = framing_fault(request);
-    if (!fault.empty()) {
-      exchange.close = true;
-      respond_problem(call, ServiceProblem::kBadRequest, fault);
-    } else {
-      router_.dispatch(call);
-    }
+    router_.dispatch(call);
     if (exchange.body_expected && !exchange.body_consumed) exchange.close = true;
     if (exchange.close) response.set_header("Connection", "close");
     if (!call.error_code.empty()) {
@@ -231,13 +206,7 @@ class HttpServer::Impl final : public httplib::Server {
 
   // One short write into the socket's empty buffer: never waits.
   void refuse_connection(ConnectionStream& stream) {
-    const std::string body =
-        service_problem_json(ServiceProblem::kOverloaded, "too many connections", "");
-    const std::string answer =
-        "HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/problem+json\r\n"
-        "Retry-After: 1\r\nConnection: close\r\nContent-Length: " +
-        std::to_string(body.size()) + "\r\n\r\n" + body;
-    stream.write(answer.data(), answer.size());
+    write_problem(stream, ServiceProblem::kOverloaded, "too many connections", "");
     stream.discard_arrived();
     metrics_.count("symcell_http_refused_connections_total");
   }
@@ -261,15 +230,54 @@ class HttpServer::Impl final : public httplib::Server {
     exchange.request_id = make_random_hex();
     current_exchange = &exchange;
     stream.begin_request();
+    HeadReader head;
     bool closed = false;
-    const bool sound = process_request(stream, last, closed, [&](httplib::Request& request) {
-      stream.begin_body();
-      prepare(request, exchange);
-    });
+    bool sound = false;
+    switch (stream.read_head(head)) {
+      case ConnectionStream::Head::kGone: break;
+      case ConnectionStream::Head::kTooLong:
+        refuse_head(stream, exchange, 431, "request line and headers are too long");
+        break;
+      case ConnectionStream::Head::kFaulty:
+        refuse_head(stream, exchange, head.fault().status, head.fault().detail);
+        break;
+      case ConnectionStream::Head::kWhole:
+        sound = process_request(stream, last, closed,
+                                [&](httplib::Request& request) { prepare(request, exchange); });
+        break;
+    }
     current_exchange = nullptr;
     --in_flight_;
     if (exchange.status != 0) record(exchange, stream.bytes_written());
     return sound && !closed && !last && !exchange.close;
+  }
+
+  // Where the next request begins is anyone's guess: the connection ends.
+  static void refuse_head(ConnectionStream& stream,
+                          Exchange& exchange,
+                          int status,
+                          const std::string& detail) {
+    write_problem(stream, service_problem_for_status(status), detail, exchange.request_id);
+    exchange.status = status;
+    exchange.close = true;
+  }
+
+  // An answer that httplib has no part in.
+  static void write_problem(ConnectionStream& stream,
+                            ServiceProblem problem,
+                            std::string_view detail,
+                            const std::string& request_id) {
+    const int status = service_problem_row(problem).http_status;
+    const std::string body = service_problem_json(problem, detail, "");
+    std::string answer = "HTTP/1.1 " + std::to_string(status) + " " +
+                         std::string(service_problem_row(problem).title) +
+                         "\r\nDate: " + format_http_date(now_ms()) +
+                         "\r\nContent-Type: application/problem+json\r\n"
+                         "X-Content-Type-Options: nosniff\r\nConnection: close\r\n";
+    if (status == 503) answer += "Retry-After: 1\r\n";
+    if (!request_id.empty()) answer += "X-Request-Id: " + request_id + "\r\n";
+    answer += "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+    stream.write(answer.data(), answer.size());
   }
 
   void record(const Exchange& exchange, std::uint64_t bytes) {
