@@ -13,6 +13,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "api/version.hpp"
 #include "server/base/fault_archive.hpp"
@@ -49,7 +50,8 @@ struct ServeFlags {
   double grace_s = 10;
   std::string log_level = "info";
   std::string log_format = "text";
-  std::string cors_origin;
+  std::vector<std::string> cors_origins;
+  std::vector<std::string> allowed_hosts;
   std::int64_t retention_hours = 24L * 7;
   std::int64_t retention_jobs = 10'000;
   std::int64_t retention_bytes = std::int64_t{20} << 30U;
@@ -76,9 +78,17 @@ void add_network_flags(CLI::App& command, ServeFlags& flags) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40U))
       ->capture_default_str();
   command
-      .add_option("--cors-origin", flags.cors_origin,
-                  "Origin whose pages may call the service, or *; default: none")
-      ->envname("SYMCELL_CORS_ORIGIN");
+      .add_option("--cors-origin", flags.cors_origins,
+                  "Origins whose pages may call the service, with commas between them, or *; "
+                  "default: none")
+      ->envname("SYMCELL_CORS_ORIGIN")
+      ->delimiter(',');
+  command
+      .add_option("--allowed-host", flags.allowed_hosts,
+                  "Names, with commas between them, that the service may be reached under besides "
+                  "localhost and the address it listens on, or *")
+      ->envname("SYMCELL_ALLOWED_HOST")
+      ->delimiter(',');
 }
 
 void add_job_flags(CLI::App& command, ServeFlags& flags) {
@@ -171,7 +181,8 @@ server::ServiceSettings settings_of(const ServeFlags& flags) {
   settings.http.port = flags.port;
   settings.http.threads = flags.http_threads;
   settings.http.max_body_bytes = flags.max_body_bytes;
-  settings.http.cors_origin = flags.cors_origin;
+  settings.http.cors_origins = flags.cors_origins;
+  settings.http.allowed_hosts = flags.allowed_hosts;
   settings.jobs.workers = flags.workers;
   settings.jobs.queue_limit = flags.queue_limit;
   settings.jobs.time_limit_s = flags.time_limit_s;

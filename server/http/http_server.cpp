@@ -14,6 +14,7 @@
 #include "server/http/call.hpp"
 #include "server/http/connection.hpp"
 #include "server/http/problem_response.hpp"
+#include "server/http/site_policy.hpp"
 #include "server/http/stop_signal.hpp"
 #include "server/http/task_queue.hpp"
 
@@ -57,7 +58,8 @@ class HttpServer::Impl final : public httplib::Server {
         router_(router),
         metrics_(metrics),
         logger_(logger),
-        in_flight_(in_flight) {
+        in_flight_(in_flight),
+        sites_(settings.host, settings.allowed_hosts, settings.cors_origins) {
     // A second line only: the body reader counts exactly, and forms need some room for headers.
     set_payload_max_length(settings_.max_body_bytes + (1UL << 20U));
     // SO_REUSEPORT, httplib's default, would let two servers share the port unnoticed.
@@ -109,9 +111,9 @@ class HttpServer::Impl final : public httplib::Server {
          "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'"},
         {"Accept-Ranges", "none"},
     };
-    if (!settings_.cors_origin.empty()) {
-      headers.emplace("Access-Control-Allow-Origin", settings_.cors_origin);
+    if (!settings_.cors_origins.empty()) {
       headers.emplace("Access-Control-Allow-Methods", "GET, HEAD, POST, DELETE, OPTIONS");
+      headers.emplace("Access-Control-Max-Age", "600");
       headers.emplace("Access-Control-Allow-Headers",
                       "Content-Type, Content-Encoding, Prefer, Idempotency-Key, If-None-Match, "
                       "X-Request-Id");
@@ -169,12 +171,38 @@ class HttpServer::Impl final : public httplib::Server {
     Exchange& exchange = *current_exchange;
     Call call{request, response, reader, exchange, {}, {}};
     response.status = 200;
-    router_.dispatch(call);
+    const std::string shared = sites_.shared_with(call.header("Origin"));
+    if (!shared.empty()) response.set_header("Access-Control-Allow-Origin", shared);
+    if (check_site(call)) router_.dispatch(call);
     if (exchange.body_expected && !exchange.body_consumed) exchange.close = true;
     if (exchange.close) response.set_header("Connection", "close");
     if (!call.error_code.empty()) {
       metrics_.count("symcell_request_errors_total", {{"code", call.error_code}});
     }
+  }
+
+  // True if the page that made a browser send this, if one did, may do so; else the call is
+  // answered.
+  bool check_site(Call& call) const {
+    const std::string host = call.header("Host");
+    const std::string& path = call.request.path;
+    // Probes come under whatever name a balancer knows, and tell nothing.
+    const bool probe = path == "/healthz" || path == "/readyz";
+    if (!probe && !sites_.allows_host(host)) {
+      respond_problem(call, ServiceProblem::kHostNotAllowed,
+                      "this server is not reached as \"" + host +
+                          "\"; if it is meant to be, start it with --allowed-host " + host);
+      return false;
+    }
+    const std::string& method = call.request.method;
+    if (method == "GET" || method == "HEAD" || method == "OPTIONS") return true;
+    const std::string origin = call.header("Origin");
+    if (sites_.allows_change(host, origin, call.header("Sec-Fetch-Site"))) return true;
+    respond_problem(call, ServiceProblem::kCrossSite,
+                    "a page of " + (origin.empty() ? std::string("another site") : origin) +
+                        " asks for this; if it may, start the server with --cors-origin and its "
+                        "origin");
+    return false;
   }
 
   // Called by httplib once the headers are read.
@@ -307,6 +335,7 @@ class HttpServer::Impl final : public httplib::Server {
   Metrics& metrics_;
   Logger& logger_;
   std::atomic<std::size_t>& in_flight_;
+  const SitePolicy sites_;
   StopSignal stop_;
   BoundedTaskQueue* queue_ = nullptr;  // owned by httplib while it listens
 };

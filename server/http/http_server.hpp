@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "server/base/log.hpp"
 #include "server/base/metrics.hpp"
@@ -18,7 +19,8 @@ struct HttpSettings {
   int port = 8080;  // 0: any free one
   std::size_t threads = 16;
   std::size_t max_body_bytes = 0;
-  std::string cors_origin;  // empty: no CORS headers
+  std::vector<std::string> cors_origins = {};   // see SitePolicy
+  std::vector<std::string> allowed_hosts = {};  // see SitePolicy
 };
 
 class HttpServer {

@@ -14,6 +14,10 @@ constexpr const char* kMediaType = "application/problem+json";
 
 constexpr std::array kTable{
     ServiceProblemRow{ServiceProblem::kBadRequest, 400, "bad_request", "The request is malformed"},
+    ServiceProblemRow{ServiceProblem::kHostNotAllowed, 403, "host_not_allowed",
+                      "The server does not go by this name"},
+    ServiceProblemRow{ServiceProblem::kCrossSite, 403, "cross_site",
+                      "A page of another site asks for this"},
     ServiceProblemRow{ServiceProblem::kNotFound, 404, "not_found", "There is nothing here"},
     ServiceProblemRow{ServiceProblem::kMethodNotAllowed, 405, "method_not_allowed",
                       "This address does not take this method"},

@@ -221,7 +221,7 @@ TEST_F(ProtocolHttpTest, StopWaitsForHalfARequestOnlyShortly) {
 class CorsHttpTest : public HttpTest {
  protected:
   void configure(ServiceSettings& settings) override {
-    settings.http.cors_origin = "https://viewer.example";
+    settings.http.cors_origins = {"https://viewer.example"};
   }
 };
 
@@ -232,6 +232,58 @@ TEST_F(CorsHttpTest, TheConfiguredOriginMayCall) {
   EXPECT_EQ(answer->get_header_value("Access-Control-Allow-Origin"), "https://viewer.example");
   EXPECT_NE(answer->get_header_value("Access-Control-Allow-Methods").find("POST"),
             std::string::npos);
+  const httplib::Headers from{{"Origin", "https://viewer.example"},
+                              {"Sec-Fetch-Site", "cross-site"}};
+  EXPECT_EQ(client().Post("/v1/jobs", from, job_body(), "application/json")->status, 202);
+  const httplib::Headers other{{"Origin", "https://evil.example"},
+                               {"Sec-Fetch-Site", "cross-site"}};
+  EXPECT_EQ(
+      problem_of(client().Post("/v1/jobs", other, job_body(), "application/json"), 403)["code"],
+      "cross_site");
+}
+
+TEST_F(ProtocolHttpTest, APageOfAnotherSiteChangesNothing) {
+  const std::string own = "127.0.0.1:" + std::to_string(port());
+  for (const httplib::Headers& headers : {
+           httplib::Headers{{"Origin", "http://evil.example"}},
+           httplib::Headers{{"Origin", "null"}},
+           httplib::Headers{{"Origin", "http://127.0.0.1:1"}},
+           httplib::Headers{{"Sec-Fetch-Site", "cross-site"}},
+           httplib::Headers{{"Sec-Fetch-Site", "same-site"}},
+       }) {
+    const auto answer = client().Post("/v1/jobs", headers, square_json(), "text/plain");
+    EXPECT_EQ(problem_of(answer, 403)["code"], "cross_site");
+    EXPECT_EQ(problem_of(client().Delete("/v1/jobs/x", headers), 403)["code"], "cross_site");
+    // What only looks is the browser's to hide from the page.
+    EXPECT_EQ(client().Get("/v1/jobs", headers)->status, 200);
+  }
+  for (const httplib::Headers& headers : {
+           httplib::Headers{{"Origin", "http://" + own}, {"Sec-Fetch-Site", "same-origin"}},
+           httplib::Headers{{"Sec-Fetch-Site", "none"}},
+           httplib::Headers{},
+       }) {
+    const auto answer = client().Post("/v1/inspect", headers, square_json(), "text/plain");
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 200) << answer->body;
+  }
+}
+
+TEST_F(ProtocolHttpTest, NamesThatAreNotTheServersAreRefused) {
+  const auto get = [&](const std::string& host, const std::string& path) {
+    return exchange("GET " + path + " HTTP/1.1\r\nConnection: close\r\nHost: " + host + "\r\n\r\n");
+  };
+  for (const char* host : {"evil.example", "evil.example:80", "127.0.0.1.evil.example", "192.0.2.1",
+                           "[2001:db8::1]", "localhost.evil.example", ""}) {
+    const std::string answer = get(host, "/v1/jobs");
+    const bool named = *host != '\0';
+    EXPECT_EQ(answer.starts_with("HTTP/1.1 403 "), named) << host << "\n" << answer;
+    EXPECT_EQ(answer.find("host_not_allowed") != std::string::npos, named) << host;
+    EXPECT_TRUE(get(host, "/healthz").starts_with("HTTP/1.1 200 ")) << host;
+  }
+  for (const char* host :
+       {"localhost", "LOCALHOST:1234", "127.0.0.1:9", "[::1]:80", "a.localhost", "x"}) {
+    EXPECT_TRUE(get(host, "/v1/jobs").starts_with("HTTP/1.1 200 ")) << host;
+  }
 }
 
 }  // namespace
