@@ -101,9 +101,10 @@ struct Exchange {
   std::string accept_encoding;   // moved here so that httplib compresses nothing by itself
   std::string content_encoding;  // likewise for inflating
   int status = 0;
-  bool body_expected = false;  // the request announces a body
-  bool body_consumed = false;  // and it was read to its end
-  bool close = false;          // the connection cannot serve another request
+  std::uint64_t declared_bytes = 0;  // of the body, by Content-Length
+  bool body_expected = false;        // the request announces a body
+  bool body_consumed = false;        // and it was read to its end
+  bool close = false;                // the connection cannot serve another request
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
 

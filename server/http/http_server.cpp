@@ -24,6 +24,8 @@ namespace {
 constexpr int kListenBacklog = 511;
 constexpr std::size_t kMaxKeepAliveRequests = 1000;
 constexpr std::chrono::seconds kKeepAlive{15};
+// What a form has besides its model; the body reader counts exactly.
+constexpr std::size_t kFormOverheadBytes = 128UL * 1024;
 // For requests under way when the server stops; the jobs have had their grace period before.
 constexpr std::chrono::seconds kStopPatience{3};
 
@@ -140,6 +142,25 @@ class HttpServer::Impl final : public httplib::Server {
     Put(everything, with_body);
     Patch(everything, with_body);
     Delete(everything, with_body);
+    // Asked before the body is sent: a client that waits for the answer need not send what is refused.
+    set_expect_100_continue_handler(
+        [this](const httplib::Request& request, httplib::Response& response) {
+          constexpr int kContinue = 100;
+          if (current_exchange->declared_bytes <= settings_.max_body_bytes + kFormOverheadBytes) {
+            return kContinue;
+          }
+          current_exchange->close = true;
+          const ServiceProblem problem = ServiceProblem::kBodyTooLarge;
+          response.status = service_problem_row(problem).http_status;
+          response.set_header("Connection", "close");
+          response.set_content(
+              service_problem_json(problem,
+                                   "the body may have " + std::to_string(settings_.max_body_bytes) +
+                                       " bytes at most, after decompression too",
+                                   request.path),
+              "application/problem+json");
+          return response.status;
+        });
     set_error_handler([](const httplib::Request& request, httplib::Response& response) {
       if (current_exchange != nullptr && current_exchange->method.empty()) {
         // The headers were not understood: where the next request begins is anyone's guess.
@@ -270,6 +291,7 @@ class HttpServer::Impl final : public httplib::Server {
         refuse_head(stream, exchange, head.fault().status, head.fault().detail);
         break;
       case ConnectionStream::Head::kWhole:
+        exchange.declared_bytes = head.head().content_length;
         sound = process_request(stream, last, closed,
                                 [&](httplib::Request& request) { prepare(request, exchange); });
         break;

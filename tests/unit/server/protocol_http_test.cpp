@@ -163,6 +163,44 @@ TEST_F(ProtocolHttpTest, WhatTheGrammarAllowsIsTaken) {
   EXPECT_TRUE(exchange("GET /healthz HTTP/1.0\r\n\r\n").starts_with("HTTP/1.1 200 "));
 }
 
+// A megabyte is the limit here.
+TEST_F(ProtocolHttpTest, ABodyThatIsTooLargeIsRefusedBeforeItIsSent) {
+  for (const char* path : {"/v1/jobs", "/v1/inspect"}) {
+    for (const char* length : {"540000000", "999999999999999999999999"}) {
+      RawConnection connection(port());
+      connection.send("POST " + std::string(path) +
+                      " HTTP/1.1\r\nHost: x\r\nContent-Type: text/plain\r\n"
+                      "Expect: 100-continue\r\nContent-Length: " +
+                      length + "\r\n\r\n");
+      const std::string answer = connection.receive_until("body_too_large");
+      EXPECT_TRUE(answer.starts_with("HTTP/1.1 413 ")) << answer;
+      EXPECT_EQ(answer.find("100 Continue"), std::string::npos) << answer;
+    }
+  }
+  RawConnection connection(port());
+  connection.send(
+      "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: text/plain\r\nExpect: 100-continue\r\n"
+      "Content-Length: " +
+      std::to_string(square_json().size()) + "\r\n\r\n");
+  EXPECT_TRUE(connection.receive_until("\r\n\r\n").starts_with("HTTP/1.1 100 "));
+  connection.send(square_json());
+  EXPECT_TRUE(connection.receive_until("\r\n\r\n").starts_with("HTTP/1.1 202 "));
+}
+
+// Many clients look for an answer only when all is sent.
+TEST_F(ProtocolHttpTest, AClientThatSendsAllOfALargeBodyFirstCanReadItsRefusal) {
+  constexpr std::size_t kBytes = 200UL << 20U;
+  RawConnection connection(port());
+  ASSERT_TRUE(
+      connection.send("POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: text/plain\r\n"
+                      "Content-Length: " +
+                      std::to_string(kBytes) + "\r\n\r\n"));
+  const std::string piece(1UL << 20U, 'x');
+  for (std::size_t sent = 0; sent < kBytes; sent += piece.size())
+    ASSERT_TRUE(connection.send(piece)) << sent;
+  EXPECT_TRUE(connection.receive_until("body_too_large").starts_with("HTTP/1.1 413 "));
+}
+
 TEST_F(ProtocolHttpTest, GarbageAndEndlessHeadersAreRefused) {
   EXPECT_TRUE(exchange("this is not http\r\n\r\n").starts_with("HTTP/1.1 400 "));
   EXPECT_TRUE(
