@@ -26,6 +26,11 @@ constexpr std::size_t kHeadBytes = 16384;  // that show a drawing, comments befo
 // What a job may take beyond its time limit before the kernel ends it, should the server not.
 constexpr std::uint64_t kCpuMarginSeconds = 5;
 
+// A cell of quadratic tetrahedra takes some 150 bytes an element. What a child of TetGen's hands back is
+// a file too, in memory, and as large as the model that it was given is.
+constexpr std::uint64_t kLeastFileBytes = std::uint64_t{4} << 30U;
+constexpr std::uint64_t kMostBytesPerElement = 1024;
+
 class LargeRead {
  public:
   explicit LargeRead(std::counting_semaphore<>& places) : places_(places) { places_.acquire(); }
@@ -56,7 +61,8 @@ WorkerLimits WorkerEngine::limits_of(const MeshOptions& options) const {
         static_cast<std::uint64_t>(std::ceil(options.time_limit_s)) + kCpuMarginSeconds;
     cpu_seconds = lower_limit(cpu_seconds, by_time);
   }
-  return {lower_limit(settings_.memory_bytes, options.memory_limit_bytes), cpu_seconds};
+  return {lower_limit(settings_.memory_bytes, options.memory_limit_bytes), cpu_seconds,
+          kLeastFileBytes + options.max_elements * kMostBytesPerElement};
 }
 
 TaskOutcome WorkerEngine::run_once(const RequestMessage& request, ExecutionContext& context) {

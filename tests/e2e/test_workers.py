@@ -9,10 +9,10 @@ import subprocess
 import time
 import unittest
 
-from symcell_server import Server, binary, long_options, square, until, without_sanitizer
+from symcell_server import Server, binary, box, long_options, square, until, without_sanitizer
 
-CRASH, ABORT, HANG, MEMORY, EXIT = 1001, 1002, 1003, 1004, 1005
-FAULTS = f"crash={CRASH},abort={ABORT},hang={HANG},memory={MEMORY},exit={EXIT}"
+CRASH, ABORT, HANG, MEMORY, EXIT, RIGHTS = 1001, 1002, 1003, 1004, 1005, 1006
+FAULTS = f"crash={CRASH},abort={ABORT},hang={HANG},memory={MEMORY},exit={EXIT},rights={RIGHTS}"
 
 
 def processes():
@@ -234,6 +234,21 @@ class WorkersTest(unittest.TestCase):
             self.assertFalse([t for t in targets.values() if "sqlite" in t or t.endswith("/lock")], targets)
             status = pathlib.Path(f"/proc/{pid}/status").read_text()
             self.assertRegex(status, r"SigBlk:\s+0+\n")
+            if not os.environ.get("SYMCELL_SANITIZE"):
+                until(lambda: re.search(r"Seccomp:\s+2\n", pathlib.Path(f"/proc/{pid}/status").read_text()),
+                      "system calls are filtered")
+            self.assertRegex(pathlib.Path(f"/proc/{pid}/status").read_text(), r"NoNewPrivs:\s+1\n")
+            self.assertRegex(limits_of(pid), r"Max open files\s+64\s+64\s")
+        busy = self.busy_worker()
+        until(lambda: re.search(r"Max file size\s+\d+\s", limits_of(busy)) or os.environ.get("SYMCELL_SANITIZE"),
+              "files have a largest size")
+
+    @without_sanitizer
+    def test_workers_can_do_nothing_but_mesh(self):
+        self.start()
+        job = self.faulty(RIGHTS)
+        self.assertEqual(job["state"], "succeeded", job)
+        self.assertEqual(self.server.finished(self.server.submit(box())["id"])["state"], "succeeded")
 
     def test_closed_standard_streams_do_no_harm(self):
         server = Server(workers=1)
