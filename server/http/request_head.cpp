@@ -143,6 +143,7 @@ bool HeadReader::take_field(std::string_view line) {
   }
   const std::string name = lower(line.substr(0, colon));
   if (name == "host") return take_host(value);
+  if (name == "prefer" && lower(value).find("wait") != std::string::npos) head_.prefers_wait = true;
   if (name == "expect") head_.expects_continue = lower(value) == "100-continue";
   return take_framing(name, value);
 }

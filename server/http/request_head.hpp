@@ -21,6 +21,7 @@ struct RequestHead {
   bool is_http_1_0 = false;
   bool chunked = false;
   bool expects_continue = false;
+  bool prefers_wait = false;  // Prefer: wait
   std::uint64_t content_length = 0;
   bool has_content_length = false;
 };

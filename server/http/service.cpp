@@ -9,7 +9,7 @@
 namespace symcell::server {
 namespace {
 
-// Half of the threads always remain for short calls.
+// Half of those threads always remain for uploads and downloads.
 std::size_t long_call_places(std::size_t threads) {
   return std::max<std::size_t>(1, threads / 2);
 }
@@ -44,7 +44,7 @@ struct Service::Impl {
       : settings(service_settings),
         logger(service_logger),
         jobs(settings.data_directory, settings.jobs, engine, metrics, logger),
-        streams(long_call_places(settings.http.threads)),
+        streams(long_call_places(settings.http.patient_threads)),
         inspections(inspection_places(settings.http.threads)),
         router(metrics, logger),
         http(settings.http, router, metrics, logger),

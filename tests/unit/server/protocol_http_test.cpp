@@ -225,18 +225,74 @@ TEST_F(ProtocolHttpTest, IdleConnectionsMakeWay) {
   }
 }
 
-TEST_F(ProtocolHttpTest, ConnectionsBeyondTheQueueAreRefusedAtOnce) {
+// Far more than there are threads: silent, idle, in the middle of a head, of a small body, of a large
+// one.
+TEST_F(ProtocolHttpTest, SlowClientsHoldNobodyUp) {
+  std::vector<std::unique_ptr<RawConnection>> slow;
+  const auto add = [&](const std::string& bytes) {
+    slow.push_back(std::make_unique<RawConnection>(port()));
+    slow.back()->send(bytes);
+  };
+  const std::string post =
+      "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: text/plain\r\nContent-Length: ";
+  for (int i = 0; i < 40; ++i) {
+    add("");
+    add("GET /healthz HTTP/1.1\r\n");
+    add(post + "1000\r\n\r\nhalf");
+  }
+  // As many as there are threads for such.
+  for (int i = 0; i < 8; ++i) add(post + "1000000\r\n\r\nhalf");
+  for (int i = 0; i < 5; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (const char* path : {"/healthz", "/readyz", "/metrics", "/v1/jobs"}) {
+      const auto answer = client().Get(path);
+      ASSERT_TRUE(answer) << path;
+      EXPECT_EQ(answer->status, 200) << path;
+    }
+    EXPECT_EQ(client().Post("/v1/jobs", job_body(), "application/json")->status, 202);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+  }
+}
+
+class FewConnectionsHttpTest : public ProtocolHttpTest {
+ protected:
+  void configure(ServiceSettings& settings) override {
+    settings.http.lobby.connections = 50;
+    settings.http.lobby.connections_per_client = 50;
+  }
+};
+
+TEST_F(FewConnectionsHttpTest, ConnectionsBeyondTheLimitAreRefusedAtOnceUnlessAnIdleOneMakesWay) {
   std::vector<std::unique_ptr<RawConnection>> held;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 50; ++i) {
     held.push_back(std::make_unique<RawConnection>(port()));
     held.back()->send("GET /healthz HTTP/1.1\r\n");  // and never finishes
   }
-  // A probe that is not refused stays, and takes the place that it found.
-  ASSERT_TRUE(eventually([&] {
-    held.push_back(std::make_unique<RawConnection>(port(), std::chrono::milliseconds(100)));
-    held.back()->send("GET /healthz HTTP/1.1\r\nConnection: close\r\n\r\n");
-    return held.back()->receive_until("\r\n").starts_with("HTTP/1.1 503 ");
-  }));
+  ASSERT_TRUE(eventually(
+      [&] { return exchange("GET /healthz HTTP/1.0\r\n\r\n").starts_with("HTTP/1.1 503 "); }));
+  held[0]->send("Host: x\r\n\r\n");
+  EXPECT_NE(held[0]->receive_until("ok\n").find("200 OK"), std::string::npos);
+  EXPECT_TRUE(eventually(
+      [&] { return exchange("GET /healthz HTTP/1.0\r\n\r\n").starts_with("HTTP/1.1 200 "); }));
+}
+
+TEST_F(ProtocolHttpTest, AClientThatClosesItsSideIsAnswered) {
+  RawConnection connection(port());
+  connection.send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
+  connection.close_sending();
+  EXPECT_NE(connection.receive_all().find("200 OK"), std::string::npos);
+}
+
+TEST_F(ProtocolHttpTest, RequestsThatComeTogetherAreAnsweredInTurn) {
+  std::string several;
+  for (int i = 0; i < 5; ++i) several += "GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n";
+  const std::string answers =
+      exchange(several + "GET /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  std::size_t count = 0;
+  for (std::size_t at = answers.find("200 OK"); at != std::string::npos;
+       at = answers.find("200 OK", at + 1))
+    ++count;
+  EXPECT_EQ(count, 6U) << answers;
 }
 
 TEST_F(ProtocolHttpTest, StopDoesNotWaitForIdleConnections) {
