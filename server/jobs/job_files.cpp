@@ -6,6 +6,7 @@
 #include "server/base/directory.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identifiers.hpp"
+#include "server/jobs/staged_model.hpp"
 
 namespace symcell::server {
 namespace fs = std::filesystem;
@@ -22,8 +23,9 @@ fs::path JobFiles::incoming() const {
 }
 
 void JobFiles::adopt_model(const fs::path& arrived, std::string_view id) const {
-  fs::create_directory(job(id));
-  rename_durably(arrived, model(id));
+  const fs::path staged = staged_folder(*this, id);
+  fs::create_directory(staged);
+  rename_durably(arrived, staged / "model");
   sync_directory(root_ / "jobs");
 }
 

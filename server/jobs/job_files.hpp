@@ -33,7 +33,7 @@ class JobFiles {
     return file += ".part";
   }
 
-  // Moves an arrived body to its job; durable when it returns.
+  // Moves an arrived body to a job to be, see server/jobs/staged_model.hpp; durable when it returns.
   void adopt_model(const std::filesystem::path& arrived, std::string_view id) const;
   // Removes everything of a job; never throws: what cannot be removed now goes at the next start.
   void remove(std::string_view id) const noexcept;

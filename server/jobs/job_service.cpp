@@ -11,6 +11,7 @@
 #include "server/base/files.hpp"
 #include "server/base/identifiers.hpp"
 #include "server/jobs/sqlite_job_store.hpp"
+#include "server/jobs/staged_model.hpp"
 #include "server/jobs/watched_job_store.hpp"
 
 namespace symcell::server {
@@ -34,6 +35,16 @@ JobChange failure(const Job& job, const std::string& message) {
   return {.time_ms = now_ms(),
           .error_code = std::string(error_code_name(error.code)),
           .error_json = problem_document(error, "/v1/jobs/" + job.id, "/model").dump()};
+}
+
+// A row whose model cannot be had is taken back.
+void settle_or_erase(JobStore& store, const JobFiles& files, const std::string& id) {
+  try {
+    settle_model(files, id);
+  } catch (...) {
+    store.erase(id);
+    throw;
+  }
 }
 
 }  // namespace
@@ -69,6 +80,11 @@ void JobService::start() {
   using Fate = DataDirectory::Fate;
   directory_.sweep_jobs(
       [this](const std::string& id) {
+        if (const auto staged = staged_job(id)) {
+          if (!store_->find(*staged)) return Fate::kRemove;
+          settle_model(files_, *staged);
+          return Fate::kKeep;
+        }
         if (store_->find(id)) return Fate::kKeep;
         return store_->was_erased(id) ? Fate::kRemove : Fate::kUnknown;
       },
@@ -158,14 +174,18 @@ SubmitOutcome JobService::store_reserved(const Submission& submission,
   try {
     files_.adopt_model(submission.model, job.id);
     InsertOutcome inserted = store_->insert(job, key);
-    if (inserted.result != InsertResult::kInserted) files_.remove(job.id);
+    if (inserted.result == InsertResult::kInserted) {
+      settle_or_erase(*store_, files_, job.id);
+    } else {
+      discard_staged(files_, job.id);
+    }
     switch (inserted.result) {
       case InsertResult::kInserted: return {SubmitStatus::kAccepted, std::move(inserted.job)};
       case InsertResult::kReplayed: return {SubmitStatus::kReplayed, std::move(inserted.job)};
       case InsertResult::kConflict: return {SubmitStatus::kKeyConflict, {}};
     }
   } catch (...) {
-    files_.remove(job.id);
+    discard_staged(files_, job.id);
     throw;
   }
   return {SubmitStatus::kKeyConflict, {}};

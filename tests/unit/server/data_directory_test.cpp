@@ -227,6 +227,18 @@ TEST_F(DataDirectoryTest, WhatADeathLeftOfADeletedJobIsRemoved) {
   EXPECT_FALSE(service_.jobs->find(id_));
 }
 
+// A death between a model's arrival and its row, and one between the row and the folder's name.
+TEST_F(DataDirectoryTest, AModelThatWasPromisedToNobodyIsRemovedAndOneThatWasIsKept) {
+  const std::string stranger(id_.size(), '0');
+  fs::create_directory(root() / "jobs" / (stranger + ".new"));
+  write_file(root() / "jobs" / (stranger + ".new") / "model", square_json());
+  fs::rename(root() / "jobs" / id_, root() / "jobs" / (id_ + ".new"));
+  service_.open();
+  EXPECT_EQ(read_file(service_.jobs->files().cell(id_)), cell_);
+  EXPECT_FALSE(fs::exists(root() / "jobs" / (stranger + ".new")));
+  EXPECT_FALSE(fs::exists(root() / "quarantine"));
+}
+
 TEST_F(DataDirectoryTest, LinksAreNeverFollowed) {
   const TemporaryFolder precious;
   fs::create_directories(precious / "inside");

@@ -90,7 +90,7 @@ TEST_F(ProtocolHttpTest, AmbiguousFramingIsRefused) {
 TEST_F(ProtocolHttpTest, HeadsOfTwoReadingsAreRefusedAndTheConnectionEnds) {
   const std::string next = "GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n";
   const std::string length = std::to_string(next.size());
-  for (const std::string& fields : {
+  for (const std::string& fields : std::vector<std::string>{
            "Host: x\r\nContent-Length : " + length,
            "Host: x\r\nContent-Length\t: " + length,
            "Host: x\r\nContent-Length:\r\n " + length,
