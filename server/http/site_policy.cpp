@@ -80,7 +80,8 @@ SitePolicy::SitePolicy(std::string bound,
   for (std::string& host : hosts_) host = lower(std::move(host));
 }
 
-bool SitePolicy::allows_host(std::string_view host) const {
+bool SitePolicy::allows_host(std::string_view asked) const {
+  const std::string host = lower(std::string(asked));
   const std::string_view name = name_of(host);
   if (name.empty() || is_loopback(name) || name == bound_ || name == "[" + bound_ + "]")
     return true;
@@ -91,9 +92,10 @@ bool SitePolicy::allows_host(std::string_view host) const {
   });
 }
 
-bool SitePolicy::allows_change(std::string_view host,
+bool SitePolicy::allows_change(std::string_view asked,
                                std::string_view origin,
                                std::string_view fetch_site) const {
+  const std::string host = lower(std::string(asked));
   const bool configured = std::ranges::any_of(
       origins_, [&](const std::string& allowed) { return allowed == "*" || allowed == origin; });
   if (!origin.empty()) return configured || is_same_site(host, origin);

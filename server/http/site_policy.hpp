@@ -19,7 +19,7 @@ class SitePolicy {
   // machine's name; "*": any. `origins`: whose pages may call and read answers; "*": all.
   SitePolicy(std::string bound, std::vector<std::string> hosts, std::vector<std::string> origins);
 
-  // `host`: the field Host, lower case, with or without a port.
+  // `host`: the field Host, in any case, with or without a port.
   [[nodiscard]] bool allows_host(std::string_view host) const;
   // Whether a request that changes something may come from there. Empty: the field is missing.
   [[nodiscard]] bool allows_change(std::string_view host,
