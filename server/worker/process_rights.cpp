@@ -34,7 +34,8 @@ constexpr std::array kAllowed{
     // the connection, which is there already
     "sendto", "recvfrom", "sendmsg", "recvmsg", "send", "recv", "shutdown", "getsockopt",
     // memory
-    "memfd_create", "brk", "mmap", "mmap2", "munmap", "mprotect", "mremap", "madvise", "mincore", "membarrier",
+    "memfd_create", "brk", "mmap", "mmap2", "munmap", "mprotect", "mremap", "madvise", "mincore",
+    "membarrier",
     // threads, children and their ends
     "fork", "vfork", "wait4", "waitid", "exit", "exit_group", "kill", "tgkill", "tkill", "futex",
     "futex_time64", "set_robust_list", "get_robust_list", "set_tid_address", "rseq", "sched_yield",
