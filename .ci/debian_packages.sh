@@ -7,7 +7,7 @@ build_packages=(
   cmake g++ ninja-build pkg-config
   libcgal-dev libexpected-dev libtet1.5-dev
   libdxflib-dev libpugixml-dev nlohmann-json3-dev zlib1g-dev
-  libboost-dev libcli11-dev libcpp-httplib-dev libspdlog-dev libsqlitecpp-dev libssl-dev
+  libboost-dev libcli11-dev libcpp-httplib-dev libseccomp-dev libspdlog-dev libsqlitecpp-dev libssl-dev
   libgtest-dev
 )
 # What tests run.

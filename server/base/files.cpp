@@ -18,6 +18,10 @@ constexpr std::size_t kPieceBytes = 64UL * 1024;
   throw std::system_error(errno, std::generic_category(), what + " " + path.string());
 }
 
+int flag_of(Links links) {
+  return links == Links::kRefuse ? O_NOFOLLOW : 0;
+}
+
 // A descriptor that is closed on every way out.
 class Descriptor {
  public:
@@ -83,8 +87,9 @@ void FileWriter::close() {
   descriptor_ = -1;
 }
 
-FileReader::FileReader(const std::filesystem::path& path)
-    : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)), buffer_(kPieceBytes, '\0') {
+FileReader::FileReader(const std::filesystem::path& path, Links links)
+    : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | flag_of(links))),
+      buffer_(kPieceBytes, '\0') {
   if (descriptor_ < 0) throw_errno("cannot open", path);
 }
 
@@ -100,8 +105,8 @@ std::string_view FileReader::next() {
   }
 }
 
-MappedFile::MappedFile(const std::filesystem::path& path) {
-  const Descriptor file(path, O_RDONLY);
+MappedFile::MappedFile(const std::filesystem::path& path, Links links) {
+  const Descriptor file(path, O_RDONLY | flag_of(links));
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) throw_errno("cannot look at", path);
   size_ = static_cast<std::size_t>(status.st_size);
@@ -123,7 +128,7 @@ MappedFile::~MappedFile() {
 
 void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to) {
   {
-    const Descriptor file(from, O_RDONLY);
+    const Descriptor file(from, O_RDONLY | O_NOFOLLOW);
     if (::fsync(file.get()) != 0) throw_errno("cannot synchronise", from);
   }
   std::filesystem::rename(from, to);

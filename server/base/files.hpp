@@ -5,11 +5,16 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace symcell::server {
+
+// What becomes of a symbolic link in the place of a file. A user's files may be links; in the
+// server's own folders nothing is one that it put there.
+enum class Links : std::uint8_t { kFollow, kRefuse };
 
 // A new file, written from the front. Closed and, unless committed, deleted by the destructor.
 class FileWriter {
@@ -42,7 +47,7 @@ class FileWriter {
 // A file read from the front in pieces: unlike a mapped one it takes no memory however large it is.
 class FileReader {
  public:
-  explicit FileReader(const std::filesystem::path& path);
+  explicit FileReader(const std::filesystem::path& path, Links links = Links::kFollow);
   ~FileReader();
   FileReader(const FileReader&) = delete;
   FileReader& operator=(const FileReader&) = delete;
@@ -58,7 +63,7 @@ class FileReader {
 // The bytes of a file, read-only. The file must not be truncated meanwhile.
 class MappedFile {
  public:
-  explicit MappedFile(const std::filesystem::path& path);
+  explicit MappedFile(const std::filesystem::path& path, Links links = Links::kFollow);
   ~MappedFile();
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&&) = delete;

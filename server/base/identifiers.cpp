@@ -7,6 +7,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "server/base/files.hpp"
+
 namespace symcell::server {
 namespace {
 
@@ -76,6 +78,15 @@ std::string Sha256::finish() {
   std::string text;
   for (unsigned int i = 0; i < length; ++i) append_hex(text, digest[i]);
   return text;
+}
+
+std::string sha256_of_file(const std::filesystem::path& path) {
+  Sha256 digest;
+  FileReader file(path, Links::kRefuse);
+  for (std::string_view piece = file.next(); !piece.empty(); piece = file.next()) {
+    digest.append(piece);
+  }
+  return digest.finish();
 }
 
 }  // namespace symcell::server

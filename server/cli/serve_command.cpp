@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <pthread.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +14,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "api/version.hpp"
 #include "server/base/fault_archive.hpp"
@@ -39,6 +41,9 @@ struct ServeFlags {
   std::string data_dir;
   std::size_t workers = std::max(1U, std::thread::hardware_concurrency());
   std::size_t http_threads = 16;
+  std::size_t patient_threads = 512;
+  std::size_t max_connections = 4096;
+  std::size_t max_connections_per_client = 1024;
   std::size_t queue_limit = 100;
   std::size_t max_body_bytes = 512UL << 20U;
   std::uint64_t max_elements = 10'000'000;
@@ -49,7 +54,8 @@ struct ServeFlags {
   double grace_s = 10;
   std::string log_level = "info";
   std::string log_format = "text";
-  std::string cors_origin;
+  std::vector<std::string> cors_origins;
+  std::vector<std::string> allowed_hosts;
   std::int64_t retention_hours = 24L * 7;
   std::int64_t retention_jobs = 10'000;
   std::int64_t retention_bytes = std::int64_t{20} << 30U;
@@ -65,9 +71,28 @@ void add_network_flags(CLI::App& command, ServeFlags& flags) {
       ->capture_default_str();
   command.add_option("--port-file", flags.port_file, "File that gets the port once it is open")
       ->envname("SYMCELL_PORT_FILE");
-  command.add_option("--http-threads", flags.http_threads, "Connections served at once")
+  command.add_option("--http-threads", flags.http_threads, "Short requests answered at once")
       ->envname("SYMCELL_HTTP_THREADS")
       ->check(CLI::Range(2, 1024))
+      ->capture_default_str();
+  command
+      .add_option("--patient-threads", flags.patient_threads,
+                  "Requests at once that wait for their client or for a job: uploads, downloads, "
+                  "event streams, waits")
+      ->envname("SYMCELL_PATIENT_THREADS")
+      ->check(CLI::Range(2, 8192))
+      ->capture_default_str();
+  command
+      .add_option("--max-connections", flags.max_connections,
+                  "Connections open at once, idle ones included")
+      ->envname("SYMCELL_MAX_CONNECTIONS")
+      ->check(CLI::Range(10, 100'000))
+      ->capture_default_str();
+  command
+      .add_option("--max-connections-per-client", flags.max_connections_per_client,
+                  "Of one address; a proxy counts as one client")
+      ->envname("SYMCELL_MAX_CONNECTIONS_PER_CLIENT")
+      ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   command
       .add_option("--max-body-bytes", flags.max_body_bytes,
@@ -76,9 +101,17 @@ void add_network_flags(CLI::App& command, ServeFlags& flags) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40U))
       ->capture_default_str();
   command
-      .add_option("--cors-origin", flags.cors_origin,
-                  "Origin whose pages may call the service, or *; default: none")
-      ->envname("SYMCELL_CORS_ORIGIN");
+      .add_option("--cors-origin", flags.cors_origins,
+                  "Origins whose pages may call the service, with commas between them, or *; "
+                  "default: none")
+      ->envname("SYMCELL_CORS_ORIGIN")
+      ->delimiter(',');
+  command
+      .add_option("--allowed-host", flags.allowed_hosts,
+                  "Names, with commas between them, that the service may be reached under besides "
+                  "localhost and the address it listens on, or *")
+      ->envname("SYMCELL_ALLOWED_HOST")
+      ->delimiter(',');
 }
 
 void add_job_flags(CLI::App& command, ServeFlags& flags) {
@@ -170,8 +203,12 @@ server::ServiceSettings settings_of(const ServeFlags& flags) {
   settings.http.host = flags.host;
   settings.http.port = flags.port;
   settings.http.threads = flags.http_threads;
+  settings.http.patient_threads = flags.patient_threads;
+  settings.http.lobby.connections = flags.max_connections;
+  settings.http.lobby.connections_per_client = flags.max_connections_per_client;
   settings.http.max_body_bytes = flags.max_body_bytes;
-  settings.http.cors_origin = flags.cors_origin;
+  settings.http.cors_origins = flags.cors_origins;
+  settings.http.allowed_hosts = flags.allowed_hosts;
   settings.jobs.workers = flags.workers;
   settings.jobs.queue_limit = flags.queue_limit;
   settings.jobs.time_limit_s = flags.time_limit_s;
@@ -221,6 +258,22 @@ void open_standard_streams() {
   if (descriptor >= 0) ::close(descriptor);
 }
 
+// A connection is a file, and the usual limit of 1024 is there for programs that use select.
+void raise_file_limit(std::size_t connections, Logger& logger) {
+  constexpr rlim_t kOtherFiles = 512;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  const rlim_t wanted = connections + kOtherFiles;
+  if (limit.rlim_cur >= wanted) return;
+  limit.rlim_cur = std::min(wanted, limit.rlim_max);
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+  if (limit.rlim_cur < wanted) {
+    logger.warning("few_files_may_be_open",
+                   {{"limit", static_cast<std::int64_t>(limit.rlim_cur)},
+                    {"max_connections", static_cast<std::int64_t>(connections)}});
+  }
+}
+
 std::uint64_t machine_memory_bytes() {
   const long pages = ::sysconf(_SC_PHYS_PAGES);
   const long page_bytes = ::sysconf(_SC_PAGESIZE);
@@ -254,6 +307,7 @@ int serve(const ServeFlags& flags) {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
   warn_of_memory(flags, logger);
+  raise_file_limit(flags.max_connections, logger);
   server::WorkerEngine engine(worker_settings_of(flags), logger);
   auto service = std::make_unique<server::Service>(settings, engine, logger);
   const int port = service->start();

@@ -30,8 +30,7 @@ void refuse_size(Call& call, std::size_t max_bytes) {
 
 // True if the declared length is acceptable; chunked bodies declare none.
 bool check_declared_length(Call& call, std::size_t max_bytes) {
-  const auto length = parse_whole_number(call.header("Content-Length"));
-  if (!length || static_cast<std::uint64_t>(*length) <= max_bytes) return true;
+  if (call.exchange.declared_bytes <= max_bytes) return true;
   refuse_size(call, max_bytes);
   return false;
 }

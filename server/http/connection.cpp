@@ -1,8 +1,10 @@
 #include "server/http/connection.hpp"
 
 #include <arpa/inet.h>
+#include <linux/sockios.h>
 #include <netdb.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -37,58 +39,63 @@ int poll_one(int descriptor, short events, milliseconds timeout) {
 
 }  // namespace
 
-ConnectionStream::ConnectionStream(socket_t socket,
+ConnectionStream::ConnectionStream(Connection& connection,
                                    const StopSignal& stop,
                                    const ConnectionLimits& limits)
-    : socket_(socket), stop_(stop), limits_(limits) {
+    : connection_(connection),
+      socket_(connection.socket()),
+      stop_(stop),
+      limits_(limits),
+      buffer_(connection.bytes),
+      head_left_(connection.head.length()) {
+  // Empty lines before a request: httplib takes them for one.
+  while (buffer_.compare(begin_, 2, "\r\n") == 0 && head_left_ > 2) {
+    begin_ += 2;
+    head_left_ -= 2;
+  }
+  if (connection.head.head().chunked) guard_.emplace();
 }
 
-void ConnectionStream::begin_request() {
-  in_header_ = true;
-  read_ = 0;
-  written_ = 0;
-  read_wait_ = {};
-  write_wait_ = {};
+ConnectionStream::~ConnectionStream() {
+  buffer_.erase(0, begin_);
 }
 
-ConnectionStream::Wait ConnectionStream::wait_readable(milliseconds timeout) const {
-  std::array<pollfd, 2> entries{pollfd{socket_, POLLIN, 0}, pollfd{stop_.descriptor(), POLLIN, 0}};
-  const int n = ::poll(entries.data(), entries.size(), static_cast<int>(timeout.count()));
-  if (n == 0 || (n < 0 && errno == EINTR)) return Wait::kTimeout;
-  if (n < 0 || entries[1].revents != 0) return Wait::kFailed;
-  return Wait::kReady;
+std::uint64_t ConnectionStream::progress(short events) const {
+  if (events == POLLIN) return read_;
+  int unsent = 0;
+  if (::ioctl(socket_, SIOCOUTQ, &unsent) != 0 || unsent < 0) return written_;
+  return written_ - std::min(written_, static_cast<std::uint64_t>(unsent));
 }
 
-bool ConnectionStream::wait_within_limits(short events,
-                                          std::uint64_t bytes,
-                                          std::chrono::nanoseconds& waited) const {
-  const milliseconds granted =
-      limits_.patience + milliseconds(bytes * 1000 / limits_.min_bytes_per_second);
-  const auto start = Clock::now();
-  const auto deadline =
-      start +
-      std::min(limits_.io_timeout, std::chrono::duration_cast<milliseconds>(granted - waited));
-  bool ready = false;
-  while (!ready) {
+bool ConnectionStream::wait_within_limits(short events, Pace& pace) const {
+  constexpr milliseconds kSlice{1000};
+  const std::uint64_t wanted =
+      static_cast<std::uint64_t>(limits_.window.count()) * limits_.min_bytes_per_second / 1000;
+  while (true) {
     const bool stopping = stop_.raised();
-    const auto limit = stopping ? std::min(deadline, stop_.give_up_at()) : deadline;
-    const auto left = std::chrono::ceil<milliseconds>(limit - Clock::now());
-    if (left.count() <= 0) break;
+    const auto start = Clock::now();
+    auto patience = std::min(kSlice, limits_.window);
+    if (stopping) {
+      const auto left = std::chrono::ceil<milliseconds>(stop_.give_up_at() - start);
+      patience = std::min(patience, left);
+    }
+    if (patience.count() <= 0) return false;
     // The stop signal wakes us once; from then on only its deadline matters.
     std::array<pollfd, 2> entries{pollfd{socket_, events, 0},
                                   pollfd{stopping ? -1 : stop_.descriptor(), POLLIN, 0}};
-    if (::poll(entries.data(), entries.size(), static_cast<int>(left.count())) < 0) {
-      if (errno != EINTR) break;
-      continue;
-    }
-    ready = entries[0].revents != 0;
+    const int n = ::poll(entries.data(), entries.size(), static_cast<int>(patience.count()));
+    if (n < 0 && errno != EINTR) return false;
+    pace.waited += Clock::now() - start;
+    if (n > 0 && entries[0].revents != 0) return true;
+    if (pace.waited < limits_.window) continue;
+    const std::uint64_t bytes = progress(events);
+    if (bytes - pace.mark < wanted) return false;
+    pace = {std::chrono::nanoseconds(0), bytes};
   }
-  waited += Clock::now() - start;
-  return ready;
 }
 
 bool ConnectionStream::is_readable() const {
-  return begin_ < end_ || poll_one(socket_, POLLIN, milliseconds(0)) > 0;
+  return begin_ < buffer_.size() || poll_one(socket_, POLLIN, milliseconds(0)) > 0;
 }
 
 bool ConnectionStream::is_writable() const {
@@ -97,19 +104,34 @@ bool ConnectionStream::is_writable() const {
   return (entry.revents & (POLLERR | POLLHUP)) == 0;
 }
 
-ssize_t ConnectionStream::read(char* ptr, size_t size) {
-  if (in_header_ && read_ >= limits_.max_header_bytes) return -1;
-  if (begin_ == end_) {
-    if (!wait_within_limits(POLLIN, read_, read_wait_)) return -1;
-    const ssize_t n = ::recv(socket_, buffer_.data(), buffer_.size(), 0);
-    if (n <= 0) return n;
-    begin_ = 0;
-    end_ = static_cast<std::size_t>(n);
+bool ConnectionStream::receive_more() {
+  std::array<char, 16384> piece;
+  while (true) {
+    const ssize_t n = ::recv(socket_, piece.data(), piece.size(), MSG_DONTWAIT);
+    if (n > 0) {
+      buffer_.assign(piece.data(), static_cast<std::size_t>(n));
+      begin_ = 0;
+      read_ += static_cast<std::uint64_t>(n);
+      return true;
+    }
+    if (n == 0) return false;
+    if (errno == EINTR) continue;
+    if (errno != EAGAIN && errno != EWOULDBLOCK) return false;
+    if (!wait_within_limits(POLLIN, reading_)) return false;
   }
-  const std::size_t n = std::min(size, end_ - begin_);
+}
+
+ssize_t ConnectionStream::read(char* ptr, size_t size) {
+  if (begin_ == buffer_.size() && !receive_more()) return -1;
+  const std::size_t most = head_left_ > 0 ? std::min(size, head_left_) : size;
+  const std::size_t n = std::min(most, buffer_.size() - begin_);
   std::memcpy(ptr, buffer_.data() + begin_, n);
+  if (head_left_ > 0) {
+    head_left_ -= n;
+  } else if (guard_ && !guard_->pass({ptr, n})) {
+    return -1;
+  }
   begin_ += n;
-  read_ += n;
   return static_cast<ssize_t>(n);
 }
 
@@ -124,7 +146,7 @@ ssize_t ConnectionStream::write(const char* ptr, size_t size) {
     }
     if (errno == EINTR) continue;
     if (errno != EAGAIN && errno != EWOULDBLOCK) return -1;
-    if (!wait_within_limits(POLLOUT, written_, write_wait_)) return -1;
+    if (!wait_within_limits(POLLOUT, writing_)) return -1;
   }
 }
 
@@ -141,24 +163,6 @@ void ConnectionStream::get_local_ip_and_port(std::string& ip, int& port) const {
   socklen_t length = sizeof(address);
   if (::getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &length) == 0) {
     describe(address, length, ip, port);
-  }
-}
-
-void ConnectionStream::discard_arrived() {
-  ::shutdown(socket_, SHUT_WR);
-  static_cast<void>(::recv(socket_, buffer_.data(), buffer_.size(), MSG_DONTWAIT));
-}
-
-void ConnectionStream::close_gently() {
-  constexpr std::size_t kMostBytes = 64UL << 20U;
-  const auto deadline = Clock::now() + std::chrono::seconds(2);
-  ::shutdown(socket_, SHUT_WR);
-  for (std::size_t total = 0; total < kMostBytes;) {
-    const auto left = std::chrono::duration_cast<milliseconds>(deadline - Clock::now());
-    if (left.count() <= 0 || wait_readable(left) != Wait::kReady) return;
-    const ssize_t n = ::recv(socket_, buffer_.data(), buffer_.size(), 0);
-    if (n <= 0) return;
-    total += static_cast<std::size_t>(n);
   }
 }
 

@@ -8,51 +8,36 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "server/http/lobby.hpp"
+#include "server/http/request_head.hpp"
 #include "server/http/stop_signal.hpp"
 
 namespace symcell::server {
 
+// A client that is waited for must take or send so much: at least this many bytes a second, on average
+// over every window of waiting.
 struct ConnectionLimits {
-  std::chrono::milliseconds io_timeout{15'000};  // without any byte
-  std::chrono::milliseconds patience{20'000};    // waiting allowed on top of what the rate grants
-  std::size_t min_bytes_per_second = 1024;       // in either direction, averaged over a request
-  std::size_t max_header_bytes = 64UL * 1024;    // request line and headers together
+  std::chrono::milliseconds window{20'000};
+  std::size_t min_bytes_per_second = 1024;
 };
 
-// A socket as httplib wants it. Reads are buffered. Only time spent waiting for the peer counts
+// A socket as httplib wants it. Reads are buffered, and what httplib reads has been looked at: the
+// head as a whole before its first byte is handed over, a chunked body on its way. Only time spent waiting for the peer counts
 // against it, so a slow producer on our side is not the client's fault.
 class ConnectionStream final : public httplib::Stream {
  public:
-  // `stop` must outlive the stream.
-  ConnectionStream(socket_t socket, const StopSignal& stop, const ConnectionLimits& limits);
+  // For one request, whose head has come. Takes the bytes of the connection that belong to it. All
+  // must outlive the stream.
+  ConnectionStream(Connection& connection, const StopSignal& stop, const ConnectionLimits& limits);
+  // Leaves the bytes that came after the request in the connection.
+  ~ConnectionStream() override;
+  ConnectionStream(const ConnectionStream&) = delete;
+  ConnectionStream& operator=(const ConnectionStream&) = delete;
 
-  // True when a request begins to arrive; false: closed, idle for too long, or stop.
-  // `give_up` is asked every 100 ms, after the first second, whether the thread is needed
-  // elsewhere.
-  template <class GiveUp>
-  [[nodiscard]] bool wait_for_request(std::chrono::milliseconds idle, const GiveUp& give_up) {
-    if (begin_ < end_) return true;
-    constexpr std::chrono::milliseconds kTick{100};
-    constexpr std::chrono::milliseconds kLeast{900};
-    for (std::chrono::milliseconds waited{0}; waited < idle; waited += kTick) {
-      const Wait outcome = wait_readable(kTick);
-      if (outcome != Wait::kTimeout) return outcome == Wait::kReady;
-      if (waited >= kLeast && give_up()) return false;
-    }
-    return false;
-  }
-  void begin_request();
-  // The headers have been read: their limit no longer applies.
-  void begin_body() { in_header_ = false; }
   [[nodiscard]] std::uint64_t bytes_written() const { return written_; }
-  // Tells the peer that no more will come and reads away what it still sends, for a while: closing
-  // with unread data would destroy the answer on its way.
-  void close_gently();
-  // Reads away what has come already; does not wait.
-  void discard_arrived();
-
   // httplib::Stream
   [[nodiscard]] bool is_readable() const override;
   [[nodiscard]] bool is_writable() const override;
@@ -63,26 +48,30 @@ class ConnectionStream final : public httplib::Stream {
   [[nodiscard]] socket_t socket() const override { return socket_; }
 
  private:
-  enum class Wait : std::uint8_t { kReady, kTimeout, kFailed };
-  // Also ends, with kFailed, when the server stops.
-  [[nodiscard]] Wait wait_readable(std::chrono::milliseconds timeout) const;
-  // Waits within the limits; false: timed out, too slow on average, or the server stops and has no
-  // patience left.
-  [[nodiscard]] bool wait_within_limits(short events,
-                                        std::uint64_t bytes,
-                                        std::chrono::nanoseconds& waited) const;
+  // How far the peer has come since the window began.
+  struct Pace {
+    std::chrono::nanoseconds waited{0};
+    std::uint64_t mark = 0;  // bytes at the window's begin
+  };
+  // Waits within the limits; false: too slow, or the server stops and has no patience left.
+  [[nodiscard]] bool wait_within_limits(short events, Pace& pace) const;
+  // That the peer has sent, or has taken: what waits in the kernel to be sent is not taken.
+  [[nodiscard]] std::uint64_t progress(short events) const;
+  // False: the end, an error, or no patience left.
+  [[nodiscard]] bool receive_more();
 
+  Connection& connection_;
   socket_t socket_;
   const StopSignal& stop_;
   ConnectionLimits limits_;
-  std::array<char, 16384> buffer_{};
-  std::size_t begin_ = 0;  // unread bytes of buffer_: [begin_, end_)
-  std::size_t end_ = 0;
-  bool in_header_ = true;
-  std::uint64_t read_ = 0;     // of this request
-  std::uint64_t written_ = 0;  // of this response
-  std::chrono::nanoseconds read_wait_{0};
-  std::chrono::nanoseconds write_wait_{0};
+  std::string& buffer_;  // the connection's bytes; those before begin_ were read
+  std::size_t begin_ = 0;
+  std::size_t head_left_ = 0;        // of the head, not yet read by httplib
+  std::optional<ChunkGuard> guard_;  // of a chunked body
+  std::uint64_t read_ = 0;
+  std::uint64_t written_ = 0;
+  Pace reading_;
+  Pace writing_;
 };
 
 // What the server notes about the request that the calling thread serves.
@@ -94,9 +83,10 @@ struct Exchange {
   std::string accept_encoding;   // moved here so that httplib compresses nothing by itself
   std::string content_encoding;  // likewise for inflating
   int status = 0;
-  bool body_expected = false;  // the request announces a body
-  bool body_consumed = false;  // and it was read to its end
-  bool close = false;          // the connection cannot serve another request
+  std::uint64_t declared_bytes = 0;  // of the body, by Content-Length
+  bool body_expected = false;        // the request announces a body
+  bool body_consumed = false;        // and it was read to its end
+  bool close = false;                // the connection cannot serve another request
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
 

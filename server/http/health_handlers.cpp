@@ -23,7 +23,8 @@ void show_readiness(Call& call, ServiceContext& context) {
     context.jobs.check_health();
   } catch (const std::exception& exception) {
     context.logger.error("store_unhealthy", {{"what", exception.what()}});
-    respond_problem(call, ServiceProblem::kOverloaded, "the job store does not answer");
+    respond_problem(call, ServiceProblem::kStoreUnavailable,
+                    "the job store does not take what is written to it");
     return;
   }
   if (const std::string fault = context.jobs.engine().fault(); !fault.empty()) {

@@ -1,10 +1,12 @@
 #include "server/http/http_server.hpp"
 
+#include <fcntl.h>
 #include <httplib.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <stdexcept>
 #include <string_view>
@@ -13,16 +15,25 @@
 #include "server/base/identifiers.hpp"
 #include "server/http/call.hpp"
 #include "server/http/connection.hpp"
+#include "server/http/crew.hpp"
 #include "server/http/problem_response.hpp"
+#include "server/http/site_policy.hpp"
 #include "server/http/stop_signal.hpp"
-#include "server/http/task_queue.hpp"
 
 namespace symcell::server {
 namespace {
 
 constexpr int kListenBacklog = 511;
 constexpr std::size_t kMaxKeepAliveRequests = 1000;
-constexpr std::chrono::seconds kKeepAlive{15};
+constexpr std::size_t kProbeThreads = 2;
+constexpr std::size_t kMostQueuedProbes = 256;
+// Requests that have come and wait for a thread; each is answered at once when it has one.
+constexpr std::size_t kQueuedPerThread = 64;
+// Ends of addresses whose answers are as long as a client is slow, or as a job runs.
+constexpr std::array kStreamedEnds{"/events", "/cell",       "/full",
+                                   "/model",  "/statistics", "/v1/inspect"};
+// What a form has besides its model; the body reader counts exactly.
+constexpr std::size_t kFormOverheadBytes = 128UL * 1024;
 // For requests under way when the server stops; the jobs have had their grace period before.
 constexpr std::chrono::seconds kStopPatience{3};
 
@@ -44,25 +55,6 @@ std::string take_header(httplib::Request& request, const char* name) {
   return value;
 }
 
-bool is_number(const std::string& text) {
-  return !text.empty() && text.size() < 19 &&
-         std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
-}
-
-// Empty: the framing is sound. Two readings of where a body ends let requests be smuggled through
-// proxies, so anything but one length or plain chunks is refused.
-std::string framing_fault(const httplib::Request& request) {
-  const std::size_t lengths = request.get_header_value_count("Content-Length");
-  const std::size_t codings = request.get_header_value_count("Transfer-Encoding");
-  if (lengths > 1 || codings > 1 || (lengths == 1 && codings == 1)) {
-    return "give either one Content-Length or one Transfer-Encoding";
-  }
-  if (lengths == 1 && !is_number(request.get_header_value("Content-Length"))) {
-    return "Content-Length is not a number";
-  }
-  return {};
-}
-
 }  // namespace
 
 class HttpServer::Impl final : public httplib::Server {
@@ -76,7 +68,14 @@ class HttpServer::Impl final : public httplib::Server {
         router_(router),
         metrics_(metrics),
         logger_(logger),
-        in_flight_(in_flight) {
+        in_flight_(in_flight),
+        sites_(settings.host, settings.allowed_hosts, settings.cors_origins),
+        lobby_(
+            settings.lobby,
+            [this](const std::shared_ptr<Connection>& connection) { return take(connection); },
+            [this] { return refusal(); }),
+        quick_(settings.threads, kQueuedPerThread * settings.threads),
+        patient_(settings.patient_threads, 0) {
     // A second line only: the body reader counts exactly, and forms need some room for headers.
     set_payload_max_length(settings_.max_body_bytes + (1UL << 20U));
     // SO_REUSEPORT, httplib's default, would let two servers share the port unnoticed.
@@ -85,15 +84,14 @@ class HttpServer::Impl final : public httplib::Server {
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
     });
     set_tcp_nodelay(true);
-    new_task_queue = [this] {
-      queue_ = new BoundedTaskQueue(settings_.threads, 4 * settings_.threads);
-      return queue_;  // httplib deletes it
-    };
     set_headers();
     set_handlers();
   }
 
-  ~Impl() override { stop_accepting(); }
+  ~Impl() override {
+    stop_accepting();
+    if (listening_ != INVALID_SOCKET) ::close(listening_);
+  }
 
   int bind() {
     const int port = settings_.port == 0 ? bind_to_any_port(settings_.host)
@@ -104,16 +102,24 @@ class HttpServer::Impl final : public httplib::Server {
                                std::to_string(settings_.port));
     }
     // httplib's backlog of 5 refuses connections under the lightest burst.
-    ::listen(svr_sock_, kListenBacklog);
+    listening_ = svr_sock_;
+    ::listen(listening_, kListenBacklog);
+    ::fcntl(listening_, F_SETFL, ::fcntl(listening_, F_GETFL) | O_NONBLOCK);
     return port;
   }
 
-  // Unlike httplib's own stop() this also holds if the accept loop has not begun yet.
+  // Instead of httplib's own loop, which gives every connection a thread.
+  void run() {
+    lobby_.run(listening_);
+    for (Crew* crew : {&quick_, &patient_, &probes_}) crew->shutdown();
+    lobby_.finish(kStopPatience);
+  }
+
+  // httplib looks at its socket to see whether a stream should end.
   void stop_accepting() {
-    const socket_t listening = svr_sock_.exchange(INVALID_SOCKET);
-    if (listening == INVALID_SOCKET) return;
-    ::shutdown(listening, SHUT_RDWR);
-    ::close(listening);
+    if (svr_sock_.exchange(INVALID_SOCKET) == INVALID_SOCKET) return;
+    ::shutdown(listening_, SHUT_RDWR);
+    lobby_.stop();
   }
 
   void stop_connections() { stop_.raise(kStopPatience); }
@@ -128,9 +134,9 @@ class HttpServer::Impl final : public httplib::Server {
          "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'"},
         {"Accept-Ranges", "none"},
     };
-    if (!settings_.cors_origin.empty()) {
-      headers.emplace("Access-Control-Allow-Origin", settings_.cors_origin);
+    if (!settings_.cors_origins.empty()) {
       headers.emplace("Access-Control-Allow-Methods", "GET, HEAD, POST, DELETE, OPTIONS");
+      headers.emplace("Access-Control-Max-Age", "600");
       headers.emplace("Access-Control-Allow-Headers",
                       "Content-Type, Content-Encoding, Prefer, Idempotency-Key, If-None-Match, "
                       "X-Request-Id");
@@ -157,6 +163,25 @@ class HttpServer::Impl final : public httplib::Server {
     Put(everything, with_body);
     Patch(everything, with_body);
     Delete(everything, with_body);
+    // Asked before the body is sent: a client that waits for the answer need not send what is refused.
+    set_expect_100_continue_handler(
+        [this](const httplib::Request& request, httplib::Response& response) {
+          constexpr int kContinue = 100;
+          if (current_exchange->declared_bytes <= settings_.max_body_bytes + kFormOverheadBytes) {
+            return kContinue;
+          }
+          current_exchange->close = true;
+          const ServiceProblem problem = ServiceProblem::kBodyTooLarge;
+          response.status = service_problem_row(problem).http_status;
+          response.set_header("Connection", "close");
+          response.set_content(
+              service_problem_json(problem,
+                                   "the body may have " + std::to_string(settings_.max_body_bytes) +
+                                       " bytes at most, after decompression too",
+                                   request.path),
+              "application/problem+json");
+          return response.status;
+        });
     set_error_handler([](const httplib::Request& request, httplib::Response& response) {
       if (current_exchange != nullptr && current_exchange->method.empty()) {
         // The headers were not understood: where the next request begins is anyone's guess.
@@ -188,18 +213,38 @@ class HttpServer::Impl final : public httplib::Server {
     Exchange& exchange = *current_exchange;
     Call call{request, response, reader, exchange, {}, {}};
     response.status = 200;
-    const std::string fault = framing_fault(request);
-    if (!fault.empty()) {
-      exchange.close = true;
-      respond_problem(call, ServiceProblem::kBadRequest, fault);
-    } else {
-      router_.dispatch(call);
-    }
+    const std::string shared = sites_.shared_with(call.header("Origin"));
+    if (!shared.empty()) response.set_header("Access-Control-Allow-Origin", shared);
+    if (check_site(call)) router_.dispatch(call);
     if (exchange.body_expected && !exchange.body_consumed) exchange.close = true;
     if (exchange.close) response.set_header("Connection", "close");
     if (!call.error_code.empty()) {
       metrics_.count("symcell_request_errors_total", {{"code", call.error_code}});
     }
+  }
+
+  // True if the page that made a browser send this, if one did, may do so; else the call is
+  // answered.
+  bool check_site(Call& call) const {
+    const std::string host = call.header("Host");
+    const std::string& path = call.request.path;
+    // Probes come under whatever name a balancer knows, and tell nothing.
+    const bool probe = path == "/healthz" || path == "/readyz";
+    if (!probe && !sites_.allows_host(host)) {
+      respond_problem(call, ServiceProblem::kHostNotAllowed,
+                      "this server is not reached as \"" + host +
+                          "\"; if it is meant to be, start it with --allowed-host " + host);
+      return false;
+    }
+    const std::string& method = call.request.method;
+    if (method == "GET" || method == "HEAD" || method == "OPTIONS") return true;
+    const std::string origin = call.header("Origin");
+    if (sites_.allows_change(host, origin, call.header("Sec-Fetch-Site"))) return true;
+    respond_problem(call, ServiceProblem::kCrossSite,
+                    "a page of " + (origin.empty() ? std::string("another site") : origin) +
+                        " asks for this; if it may, start the server with --cors-origin and its "
+                        "origin");
+    return false;
   }
 
   // Called by httplib once the headers are read.
@@ -217,59 +262,99 @@ class HttpServer::Impl final : public httplib::Server {
         request.has_header("Transfer-Encoding") || (!length.empty() && length != "0");
   }
 
-  bool process_and_close_socket(socket_t socket) override {
-    ConnectionStream stream(socket, stop_, ConnectionLimits{});
-    if (BoundedTaskQueue::overloaded()) {
-      refuse_connection(stream);
-    } else {
-      serve(stream);
-    }
-    ::shutdown(socket, SHUT_RDWR);
-    ::close(socket);
-    return true;
+  enum class Lane : std::uint8_t { kProbe, kQuick, kPatient };
+
+  static Lane lane_of(const Connection& connection) {
+    const RequestHead& head = connection.head.head();
+    // Refused at once.
+    if (connection.too_long || connection.head.fault().status != 0) return Lane::kQuick;
+    const std::string_view target = head.target;
+    const std::string_view path = target.substr(0, target.find('?'));
+    if (path == "/healthz" || path == "/readyz" || path == "/metrics") return Lane::kProbe;
+    const bool arrived = !head.chunked && !head.expects_continue &&
+                         connection.bytes.size() >= connection.head.length() + head.content_length;
+    const bool streams =
+        std::ranges::any_of(kStreamedEnds, [&](const char* end) { return path.ends_with(end); });
+    return arrived && !streams && !head.prefers_wait ? Lane::kQuick : Lane::kPatient;
   }
 
-  // One short write into the socket's empty buffer: never waits.
-  void refuse_connection(ConnectionStream& stream) {
-    const std::string body =
-        service_problem_json(ServiceProblem::kOverloaded, "too many connections", "");
-    const std::string answer =
-        "HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/problem+json\r\n"
-        "Retry-After: 1\r\nConnection: close\r\nContent-Length: " +
-        std::to_string(body.size()) + "\r\n\r\n" + body;
-    stream.write(answer.data(), answer.size());
-    stream.discard_arrived();
-    metrics_.count("symcell_http_refused_connections_total");
-  }
-
-  void serve(ConnectionStream& stream) {
-    // An idle connection makes way when others wait for its thread.
-    const auto needed_elsewhere = [this] { return queue_->waiting() > 0; };
-    for (std::size_t served = 0; served < kMaxKeepAliveRequests; ++served) {
-      if (!stream.wait_for_request(kKeepAlive, needed_elsewhere)) return;
-      const bool last = served + 1 == kMaxKeepAliveRequests || svr_sock_ == INVALID_SOCKET;
-      if (!serve_one(stream, last)) break;
-      if (svr_sock_ == INVALID_SOCKET) break;
+  // False: nobody is free.
+  bool take(const std::shared_ptr<Connection>& connection) {
+    Crew* crew = &quick_;
+    switch (lane_of(*connection)) {
+      case Lane::kProbe: crew = &probes_; break;
+      case Lane::kQuick: break;
+      case Lane::kPatient: crew = &patient_; break;
     }
-    stream.close_gently();
+    return crew->try_enqueue([this, connection] {
+      if (serve(*connection)) {
+        lobby_.give_back(connection);
+      } else {
+        lobby_.let_go(connection);
+      }
+    });
   }
 
   // False: the connection must be closed.
-  bool serve_one(ConnectionStream& stream, bool last) {
+  bool serve(Connection& connection) {
     ++in_flight_;
     Exchange exchange;
     exchange.request_id = make_random_hex();
+    exchange.declared_bytes = connection.head.head().content_length;
     current_exchange = &exchange;
-    stream.begin_request();
+    const bool last = ++connection.served == kMaxKeepAliveRequests || svr_sock_ == INVALID_SOCKET;
+    ConnectionLimits limits;
+    limits.window = settings_.pace_window;
+    ConnectionStream stream(connection, stop_, limits);
     bool closed = false;
-    const bool sound = process_request(stream, last, closed, [&](httplib::Request& request) {
-      stream.begin_body();
-      prepare(request, exchange);
-    });
+    bool sound = false;
+    const HeadFault& fault = connection.head.fault();
+    if (connection.too_long) {
+      refuse_head(stream, exchange, 431, "request line and headers are too long");
+    } else if (fault.status != 0) {
+      refuse_head(stream, exchange, fault.status, fault.detail);
+    } else {
+      sound = process_request(stream, last, closed,
+                              [&](httplib::Request& request) { prepare(request, exchange); });
+    }
     current_exchange = nullptr;
     --in_flight_;
     if (exchange.status != 0) record(exchange, stream.bytes_written());
-    return sound && !closed && !last && !exchange.close;
+    return sound && !closed && !last && !exchange.close && svr_sock_ != INVALID_SOCKET;
+  }
+
+  // Where the next request begins is anyone's guess: the connection ends.
+  static void refuse_head(ConnectionStream& stream,
+                          Exchange& exchange,
+                          int status,
+                          const std::string& detail) {
+    const std::string answer =
+        problem_answer(service_problem_for_status(status), detail, exchange.request_id);
+    stream.write(answer.data(), answer.size());
+    exchange.status = status;
+    exchange.close = true;
+  }
+
+  // An answer that httplib has no part in.
+  static std::string problem_answer(ServiceProblem problem,
+                                    std::string_view detail,
+                                    const std::string& request_id) {
+    const int status = service_problem_row(problem).http_status;
+    const std::string body = service_problem_json(problem, detail, "");
+    std::string answer = "HTTP/1.1 " + std::to_string(status) + " " +
+                         std::string(service_problem_row(problem).title) +
+                         "\r\nDate: " + format_http_date(now_ms()) +
+                         "\r\nContent-Type: application/problem+json\r\n"
+                         "X-Content-Type-Options: nosniff\r\nConnection: close\r\n";
+    if (status == 503) answer += "Retry-After: 1\r\n";
+    if (!request_id.empty()) answer += "X-Request-Id: " + request_id + "\r\n";
+    return answer + "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+  }
+
+  // For a connection that no thread is free for, or that is one too many.
+  std::string refusal() {
+    metrics_.count("symcell_http_refused_connections_total");
+    return problem_answer(ServiceProblem::kOverloaded, "too many connections", "");
   }
 
   void record(const Exchange& exchange, std::uint64_t bytes) {
@@ -299,8 +384,14 @@ class HttpServer::Impl final : public httplib::Server {
   Metrics& metrics_;
   Logger& logger_;
   std::atomic<std::size_t>& in_flight_;
+  const SitePolicy sites_;
   StopSignal stop_;
-  BoundedTaskQueue* queue_ = nullptr;  // owned by httplib while it listens
+  int listening_ = INVALID_SOCKET;  // closed by the destructor: the lobby's thread may look at it
+  Lobby lobby_;
+  // They give connections back to the lobby.
+  Crew probes_{kProbeThreads, kMostQueuedProbes};
+  Crew quick_;
+  Crew patient_;
 };
 
 HttpServer::HttpServer(const HttpSettings& settings,
@@ -317,7 +408,7 @@ int HttpServer::bind() {
 }
 
 void HttpServer::run() {
-  impl_->listen_after_bind();
+  impl_->run();
 }
 
 void HttpServer::stop() {

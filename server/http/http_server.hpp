@@ -1,24 +1,36 @@
-// httplib's server with what it lacks: bounded queues, limits on slow clients, prompt stop, request
-// ids, access log, and connections that are closed without loss of the answer.
+// httplib's server with what it lacks: connections that wait without a thread, limits on slow
+// clients, prompt stop, request ids, access log, and connections that are closed without loss of the
+// answer.
+//
+// A request gets a thread when its head and, if small, its body have come. Probes have threads of
+// their own; what may wait long, for the rest of a body, for a slow reader or for a job, has others
+// than what is answered at once. So neither slow clients nor waiting ones hold up the rest.
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "server/base/log.hpp"
 #include "server/base/metrics.hpp"
+#include "server/http/lobby.hpp"
 #include "server/http/router.hpp"
 
 namespace symcell::server {
 
 struct HttpSettings {
   std::string host = "127.0.0.1";
-  int port = 8080;  // 0: any free one
-  std::size_t threads = 16;
+  int port = 8080;                    // 0: any free one
+  std::size_t threads = 16;           // for what is answered at once
+  std::size_t patient_threads = 512;  // for what waits for its client, or for a job
+  LobbyLimits lobby;
+  std::chrono::milliseconds pace_window{20'000};  // see ConnectionLimits
   std::size_t max_body_bytes = 0;
-  std::string cors_origin;  // empty: no CORS headers
+  std::vector<std::string> cors_origins = {};   // see SitePolicy
+  std::vector<std::string> allowed_hosts = {};  // see SitePolicy
 };
 
 class HttpServer {

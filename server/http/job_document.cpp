@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/base/clock.hpp"
-#include "server/base/files.hpp"
+#include "server/jobs/stored_files.hpp"
 
 namespace symcell::server {
 namespace {
@@ -37,11 +37,13 @@ Json options_of(const Job& job) {
   return options;
 }
 
-// Null if the file has just gone with its job.
+// Null if the file is damaged, or has just gone with its job.
 Json statistics_of(const Job& job, const JobService& jobs) {
-  const auto path = jobs.files().statistics(job.id);
-  if (!std::filesystem::exists(path)) return nullptr;
-  return Json::parse(MappedFile(path).bytes(), nullptr, false);
+  try {
+    return Json::parse(read_statistics(job, jobs.files()), nullptr, false);
+  } catch (const StoredFileDamaged&) {
+    return nullptr;
+  }
 }
 
 }  // namespace
@@ -93,6 +95,7 @@ Json job_document(const Job& job, JobService& jobs, JobDetail detail) {
     document["warnings"] = statistics.is_object() && statistics.contains("warnings")
                                ? statistics["warnings"]
                                : Json::array();
+    if (statistics.is_null()) document["damaged"] = Json::array({"statistics"});
     document["statistics"] = std::move(statistics);
   }
   document["links"] = links_of(job);

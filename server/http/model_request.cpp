@@ -109,7 +109,7 @@ std::optional<ModelRequest> parse_parts(Call& call, ServiceContext& context, Par
 std::optional<Parts> receive_envelope(Call& call, const JobFiles& files, std::size_t max_bytes) {
   auto body = receive_body(call, files.incoming(), max_bytes);
   if (!body) return std::nullopt;
-  const MappedFile bytes(body->path());
+  const MappedFile bytes(body->path(), Links::kRefuse);
   const auto envelope = split_envelope(bytes.bytes());
   if (!envelope) {
     respond_error(call, envelope.error(), "");

@@ -14,6 +14,10 @@ constexpr const char* kMediaType = "application/problem+json";
 
 constexpr std::array kTable{
     ServiceProblemRow{ServiceProblem::kBadRequest, 400, "bad_request", "The request is malformed"},
+    ServiceProblemRow{ServiceProblem::kHostNotAllowed, 403, "host_not_allowed",
+                      "The server does not go by this name"},
+    ServiceProblemRow{ServiceProblem::kCrossSite, 403, "cross_site",
+                      "A page of another site asks for this"},
     ServiceProblemRow{ServiceProblem::kNotFound, 404, "not_found", "There is nothing here"},
     ServiceProblemRow{ServiceProblem::kMethodNotAllowed, 405, "method_not_allowed",
                       "This address does not take this method"},
@@ -43,9 +47,13 @@ constexpr std::array kTable{
                       "The server cannot do this"},
     ServiceProblemRow{ServiceProblem::kStopping, 503, "stopping", "The server is stopping"},
     ServiceProblemRow{ServiceProblem::kOverloaded, 503, "overloaded", "The server is overloaded"},
+    ServiceProblemRow{ServiceProblem::kStoreUnavailable, 503, "store_unavailable",
+                      "The job store does not answer"},
     ServiceProblemRow{ServiceProblem::kStorageFull, 507, "storage_full",
                       "The server has no room for the job"},
     ServiceProblemRow{ServiceProblem::kInternal, 500, "internal", "Internal error"},
+    ServiceProblemRow{ServiceProblem::kStoredFileDamaged, 500, "stored_file_damaged",
+                      "A stored file is damaged"},
 };
 
 bool worth_retrying(int status) {
@@ -66,7 +74,9 @@ std::span<const ServiceProblemRow> service_problem_table() {
 
 const ServiceProblemRow& service_problem_row(ServiceProblem problem) {
   const auto* row = std::ranges::find(kTable, problem, &ServiceProblemRow::problem);
-  return row != kTable.end() ? *row : kTable.back();
+  return row != kTable.end()
+             ? *row
+             : *std::ranges::find(kTable, ServiceProblem::kInternal, &ServiceProblemRow::problem);
 }
 
 ServiceProblem service_problem_for_status(int status) {

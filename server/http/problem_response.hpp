@@ -15,6 +15,8 @@ struct Call;
 // Errors that HTTP has and the library has not; the library's own codes are in api/problem.hpp.
 enum class ServiceProblem : std::uint8_t {
   kBadRequest,
+  kHostNotAllowed,
+  kCrossSite,
   kNotFound,
   kMethodNotAllowed,
   kNotAcceptable,
@@ -33,8 +35,10 @@ enum class ServiceProblem : std::uint8_t {
   kNotImplemented,
   kStopping,
   kOverloaded,
+  kStoreUnavailable,
   kStorageFull,
   kInternal,
+  kStoredFileDamaged,
 };
 
 struct ServiceProblemRow {

@@ -4,7 +4,6 @@
 #include <string>
 #include <string_view>
 
-#include "api/formats/cell_archive.hpp"
 #include "api/formats/mesh_writer.hpp"
 #include "api/version.hpp"
 #include "server/base/files.hpp"
@@ -15,6 +14,7 @@
 #include "server/http/problem_response.hpp"
 #include "server/http/router.hpp"
 #include "server/http/service_context.hpp"
+#include "server/jobs/stored_files.hpp"
 
 namespace symcell::server {
 namespace {
@@ -185,27 +185,10 @@ std::string variant_of(Call& call, MeshFormat format) {
   return "-" + digest.finish();
 }
 
-// Errors of the archive are ours: throws.
-std::int32_t dimension_of(const Job& job, const JobFiles& files) {
-  const auto dimension = cell_archive_dimension(MappedFile(files.cell(job.id)).bytes());
-  if (!dimension) {
-    throw std::runtime_error("the archive of " + job.id + ": " + dimension.error().message);
-  }
-  return *dimension;
-}
-
-// The cell is read before the answer begins, so that a damaged archive is an error and no broken
-// download. Errors are ours: throws.
-std::shared_ptr<const SymmetryCellMesh> load_cell(const Job& job, const JobFiles& files) {
-  auto cell = read_cell_archive(MappedFile(files.cell(job.id)).bytes());
-  if (!cell) throw std::runtime_error("the archive of " + job.id + ": " + cell.error().message);
-  return std::make_shared<const SymmetryCellMesh>(std::move(*cell));
-}
-
 void send_mesh(Call& call, ServiceContext& context, MeshPart part) {
   const auto job = succeeded_job(call, context);
   if (!job) return;
-  const auto format = mesh_format_of(call, dimension_of(*job, context.jobs.files()));
+  const auto format = mesh_format_of(call, read_cell_dimension(*job, context.jobs.files()));
   if (!format) return;
   const auto options = write_options_of(call);
   if (!options) return;
@@ -213,7 +196,10 @@ void send_mesh(Call& call, ServiceContext& context, MeshPart part) {
   const std::string format_name(mesh_format_name(*format));
   const bool head = call.request.method == "HEAD";
   std::shared_ptr<const SymmetryCellMesh> cell;
-  if (!head || takes_deck_options(*format)) cell = load_cell(*job, context.jobs.files());
+  // Read before the answer begins, so that a damaged archive is an error and no broken download.
+  if (!head || takes_deck_options(*format)) {
+    cell = std::make_shared<const SymmetryCellMesh>(read_cell(*job, context.jobs.files()));
+  }
   const auto fits = cell ? check_mesh_output(*cell, part, *format, *options)
                          : check_write_options(*format, *options);
   if (!fits) {
@@ -239,7 +225,7 @@ void send_mesh(Call& call, ServiceContext& context, MeshPart part) {
 
 Producer file_producer(const std::filesystem::path& path) {
   // Opened now: the job may be deleted while its file is on its way.
-  auto file = std::make_shared<FileReader>(path);
+  auto file = std::make_shared<FileReader>(path, Links::kRefuse);
   return [file = std::move(file)](const PieceSink& sink) {
     for (std::string_view piece = file->next(); !piece.empty(); piece = file->next()) {
       if (!sink(piece)) return false;
@@ -258,8 +244,11 @@ bool check_accepts(Call& call, std::string_view media_type) {
 void send_statistics(Call& call, ServiceContext& context) {
   const auto job = succeeded_job(call, context);
   if (!job || !check_accepts(call, "application/json")) return;
-  respond_representation(call, {"application/json", "statistics.json", job->id + "-statistics",
-                                file_producer(context.jobs.files().statistics(job->id))});
+  const auto produce = [text = read_statistics(*job, context.jobs.files())](const PieceSink& sink) {
+    return sink(text);
+  };
+  respond_representation(call,
+                         {"application/json", "statistics.json", job->id + "-statistics", produce});
 }
 
 void send_model(Call& call, ServiceContext& context) {
@@ -270,6 +259,7 @@ void send_model(Call& call, ServiceContext& context) {
   }
   const ModelFormatInfo& format = model_format_info(job->model_format);
   if (!check_accepts(call, format.media_type)) return;
+  check_model(*job, context.jobs.files());
   std::string media_type(format.media_type);
   if (media_type == "text/plain") media_type += "; charset=utf-8";
   respond_representation(call,

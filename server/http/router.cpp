@@ -8,6 +8,8 @@
 
 #include "server/http/call.hpp"
 #include "server/http/problem_response.hpp"
+#include "server/jobs/job_store.hpp"
+#include "server/jobs/stored_files.hpp"
 
 namespace symcell::server {
 namespace {
@@ -91,6 +93,21 @@ void Router::refuse_method(Call& call, const std::string& allowed) const {
 void Router::run(const Route& route, Call& call) const {
   try {
     route.handler(call);
+    return;
+  } catch (const StoreError& error) {
+    // Told and counted by the store's watch.
+    if (error.kind() == StoreError::Kind::kFull) {
+      respond_problem(call, ServiceProblem::kStorageFull, "the disk is full; try again later");
+    } else {
+      respond_problem(call, ServiceProblem::kStoreUnavailable,
+                      "the job store does not answer at present; try again soon");
+    }
+    return;
+  } catch (const StoredFileDamaged& damaged) {
+    logger_.error("stored_file_damaged", {{"route", route.path}, {"what", damaged.what()}});
+    metrics_.count("symcell_internal_errors_total", {{"where", "stored_file"}});
+    respond_problem(call, ServiceProblem::kStoredFileDamaged,
+                    std::string(damaged.what()) + "; submit the job again");
     return;
   } catch (const std::system_error& error) {
     if (is_disk_full(error)) {

@@ -26,7 +26,7 @@ class Router {
   void add(std::string method, std::string path, RouteHandler handler);
 
   // Answers the call whatever happens: unknown paths with 404, other methods with 405 and Allow,
-  // exceptions with 500 (507 if the disk is full).
+  // exceptions with 500 (507 if the disk is full, 503 if the store fails).
   void dispatch(Call& call) const;
 
  private:

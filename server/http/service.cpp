@@ -9,7 +9,7 @@
 namespace symcell::server {
 namespace {
 
-// Half of the threads always remain for short calls.
+// Half of those threads always remain for uploads and downloads.
 std::size_t long_call_places(std::size_t threads) {
   return std::max<std::size_t>(1, threads / 2);
 }
@@ -31,6 +31,9 @@ void declare_metrics(Metrics& metrics) {
   metrics.declare_histogram("symcell_job_duration_seconds",
                             "Time jobs ran, by the state they ended in.",
                             {0.01, 0.05, 0.25, 1, 5, 30, 120, 600, 3600});
+  metrics.declare_counter("symcell_job_write_retries_total",
+                          "Times that a job's state or results could not be written and were tried "
+                          "again.");
   metrics.declare_counter("symcell_internal_errors_total", "Bugs and failures of the machine.");
 }
 
@@ -41,7 +44,7 @@ struct Service::Impl {
       : settings(service_settings),
         logger(service_logger),
         jobs(settings.data_directory, settings.jobs, engine, metrics, logger),
-        streams(long_call_places(settings.http.threads)),
+        streams(long_call_places(settings.http.patient_threads)),
         inspections(inspection_places(settings.http.threads)),
         router(metrics, logger),
         http(settings.http, router, metrics, logger),

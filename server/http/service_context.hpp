@@ -19,7 +19,7 @@ struct ServiceContext {
   Logger& logger;
   std::size_t max_body_bytes;
   // Places for calls that hold an HTTP thread for long; fewer than there are threads, so that
-  // short calls always find one.
+  // other calls always find one.
   Slots& streams;      // event streams and waits for a job
   Slots& inspections;  // work on the processor
   const std::atomic<std::size_t>& requests_in_flight;

@@ -39,6 +39,7 @@ struct Job {
   std::int64_t created_ms = 0;
   std::optional<std::int64_t> started_ms;
   std::optional<std::int64_t> finished_ms;
+  std::optional<std::int64_t> finished_clock_ms;  // by JobStore::clock_ms
 
   ModelFormat model_format = ModelFormat::kPslgJson;
   std::string model_name;    // of the uploaded file, may be empty
@@ -47,8 +48,11 @@ struct Job {
   std::string error_code;  // name of the code; empty unless failed
   std::string error_json;  // problem document; empty unless failed
   std::int64_t model_bytes = 0;
+  // SHA-256 of the stored files; empty where an earlier version took none. A cell carries its own.
+  std::string model_sha256;
+  std::string statistics_sha256;
   std::int64_t result_bytes = 0;
-  std::int32_t crashes = 0;  // how often the server died while it ran this job
+  std::int32_t lost_workers = 0;  // how often a worker that ran this job was killed from outside
 };
 
 }  // namespace symcell::server

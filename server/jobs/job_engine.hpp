@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -22,6 +23,10 @@ struct EngineJob {
   // Files to be written; they don't exist before, and are of no use unless `run` succeeds.
   std::filesystem::path cell;
   std::filesystem::path statistics;
+  // Processes that were killed from outside while they ran this job before, and who is told of one
+  // more; not called for a process that ends by its own fault.
+  std::int32_t lost_workers = 0;
+  std::function<void()> on_lost_worker = {};
 };
 
 class JobEngine {

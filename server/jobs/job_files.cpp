@@ -3,22 +3,19 @@
 #include <system_error>
 #include <utility>
 
+#include "server/base/directory.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identifiers.hpp"
+#include "server/jobs/staged_model.hpp"
 
 namespace symcell::server {
 namespace fs = std::filesystem;
 
 JobFiles::JobFiles(fs::path data_directory) : root_(std::move(data_directory)) {
-  fs::create_directories(root_ / "jobs");
-  fs::create_directories(root_ / "incoming");
-  for (const fs::path& folder : {root_ / "jobs", root_ / "incoming"}) {
-    fs::permissions(folder, fs::perms::owner_all);
-  }
-}
-
-void JobFiles::empty_incoming() const {
-  for (const auto& entry : fs::directory_iterator(root_ / "incoming")) fs::remove(entry.path());
+  const Directory root(root_);
+  // Each throws where the name is taken by a link.
+  static_cast<void>(root.folder("jobs"));
+  static_cast<void>(root.folder("incoming"));
 }
 
 fs::path JobFiles::incoming() const {
@@ -26,8 +23,9 @@ fs::path JobFiles::incoming() const {
 }
 
 void JobFiles::adopt_model(const fs::path& arrived, std::string_view id) const {
-  fs::create_directory(job(id));
-  rename_durably(arrived, model(id));
+  const fs::path staged = staged_folder(*this, id);
+  fs::create_directory(staged);
+  rename_durably(arrived, staged / "model");
   sync_directory(root_ / "jobs");
 }
 

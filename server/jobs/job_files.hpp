@@ -1,7 +1,6 @@
-// Which file of a job lies where under the data directory.
+// Which file of a job lies where under the data directory (server/jobs/data_directory.hpp).
 //
 //   jobs.sqlite                  the rows
-//   lock                         held while a server uses the directory
 //   faults/<id>/                 models of internal errors, see server/base/fault_archive.hpp
 //   incoming/<random>            request bodies that are still arriving; emptied at start
 //   jobs/<id>/model              as uploaded
@@ -23,9 +22,6 @@ class JobFiles {
 
   [[nodiscard]] std::filesystem::path database() const { return root_ / "jobs.sqlite"; }
   [[nodiscard]] std::filesystem::path faults() const { return root_ / "faults"; }
-  [[nodiscard]] std::filesystem::path lock() const { return root_ / "lock"; }
-  // Bodies that a dead server was receiving. Requires: no other server uses the directory.
-  void empty_incoming() const;
   // A fresh name.
   [[nodiscard]] std::filesystem::path incoming() const;
   [[nodiscard]] std::filesystem::path model(std::string_view id) const { return job(id) / "model"; }
@@ -37,18 +33,10 @@ class JobFiles {
     return file += ".part";
   }
 
-  // Moves an arrived body to its job; durable when it returns.
+  // Moves an arrived body to a job to be, see server/jobs/staged_model.hpp; durable when it returns.
   void adopt_model(const std::filesystem::path& arrived, std::string_view id) const;
   // Removes everything of a job; never throws: what cannot be removed now goes at the next start.
   void remove(std::string_view id) const noexcept;
-  // Calls `keep(id)` for every job folder and removes those it denies.
-  template <class Keep>
-  void sweep(const Keep& keep) const {
-    for (const auto& entry : std::filesystem::directory_iterator(root_ / "jobs")) {
-      const std::string id = entry.path().filename().string();
-      if (!keep(id)) remove(id);
-    }
-  }
 
  private:
   [[nodiscard]] std::filesystem::path job(std::string_view id) const { return root_ / "jobs" / id; }

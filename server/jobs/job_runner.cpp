@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <cerrno>
 #include <exception>
 #include <new>
 #include <nlohmann/json.hpp>
@@ -13,12 +14,43 @@
 #include "core/base/assert.hpp"
 #include "server/base/clock.hpp"
 #include "server/base/files.hpp"
+#include "server/base/identifiers.hpp"
+#include "server/jobs/stored_files.hpp"
 
 namespace symcell::server {
 namespace {
 
 // How long a cancelled engine may take before stop() gives it up; it promises one second.
 constexpr std::chrono::seconds kCancelPatience{5};
+
+// Between two tries of what the store or the disk refused.
+constexpr std::chrono::milliseconds kFirstPause{50};
+constexpr std::chrono::milliseconds kLongestPause{1000};
+
+// What passes when the cause is gone, unlike a file that is missing.
+bool may_pass(const std::system_error& error) {
+  if (error.code().category() != std::generic_category()) return false;
+  switch (error.code().value()) {
+    case ENOSPC:
+    case EDQUOT:
+    case EROFS:
+    case EIO:
+    case ENOMEM:
+    case EMFILE:
+    case ENFILE: return true;
+    default: return false;
+  }
+}
+
+// Also after a try that came half way.
+void publish_file(const std::filesystem::path& file) {
+  const std::filesystem::path part = JobFiles::partial(file);
+  if (std::filesystem::exists(file) && !std::filesystem::exists(part)) {
+    sync_directory(file.parent_path());
+    return;
+  }
+  rename_durably(part, file);
+}
 
 std::int64_t file_bytes(const std::filesystem::path& file) {
   return static_cast<std::int64_t>(std::filesystem::file_size(file));
@@ -102,6 +134,7 @@ std::size_t JobRunner::running() const {
 bool JobRunner::stop(std::chrono::milliseconds grace) {
   std::unique_lock lock(mutex_);
   stopping_ = true;
+  stopped_.notify_all();
   const auto none_runs = [this] { return running_.empty(); };
   if (!idle_.wait_for(lock, grace, none_runs)) {
     for (const auto& [id, running] : running_) {
@@ -129,7 +162,7 @@ void JobRunner::run_next() {
   try {
     execute(id, *running);
   } catch (const std::exception& exception) {
-    // The store or the disk failed. The row stays as it is; the next start requeues the job.
+    // A failure that does not pass. The row stays as it is; the next start requeues the job.
     parts_.logger.error("job_bookkeeping_failed", {{"job", id}, {"what", exception.what()}});
     parts_.metrics.count("symcell_internal_errors_total", {{"where", "job"}});
   }
@@ -154,9 +187,48 @@ void JobRunner::remove_files_if_deleted(const std::string& id) {
   }
 }
 
+bool JobRunner::persist(const std::string& id, const std::function<void()>& work) {
+  for (std::chrono::milliseconds pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
+    std::string fault;
+    try {
+      work();
+      return true;
+    } catch (const StoreError& error) {
+      fault = error.what();
+    } catch (const std::system_error& error) {
+      if (!may_pass(error)) throw;
+      fault = error.what();
+    }
+    parts_.metrics.count("symcell_job_write_retries_total");
+    parts_.logger.warning("job_write_failed", {{"job", id}, {"what", std::string_view(fault)}});
+    std::unique_lock lock(mutex_);
+    if (stopped_.wait_for(lock, pause, [this] { return stopping_; })) return false;
+  }
+}
+
+void JobRunner::count_lost_worker(const std::string& id) {
+  {
+    // Where everything is told to stop at once, workers may end before the server has them ended.
+    const std::lock_guard lock(mutex_);
+    if (stopping_) return;
+  }
+  static_cast<void>(persist(id, [&] { parts_.store.count_lost_worker(id); }));
+}
+
+bool JobRunner::publish(const std::string& id) {
+  return persist(id, [&] {
+    publish_file(parts_.files.statistics(id));
+    publish_file(parts_.files.cell(id));
+  });
+}
+
 void JobRunner::execute(const std::string& id, Running& running) {
-  const auto job = parts_.store.apply(id, JobEvent::kStart, {.time_ms = now_ms()});
-  if (!job) return;  // deleted between the queue and here
+  std::optional<Job> job;
+  const bool asked =
+      persist(id, [&] { job = parts_.store.apply(id, JobEvent::kStart, {.time_ms = now_ms()}); });
+  if (!asked) return;  // the row says queued: the next start takes it up
+  if (!job) return;    // deleted between the queue and here
+  running.started_steady_ms = steady_ms();
   parts_.logger.info("job_started", {{"job", id}});
   parts_.changes.notify();
 
@@ -183,6 +255,8 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
   work.options = *options;
   work.cell = JobFiles::partial(parts_.files.cell(job.id));
   work.statistics = JobFiles::partial(parts_.files.statistics(job.id));
+  work.lost_workers = job.lost_workers;
+  work.on_lost_worker = [this, &job] { count_lost_worker(job.id); };
   // Left by a run that died.
   std::filesystem::remove(work.cell);
   std::filesystem::remove(work.statistics);
@@ -190,9 +264,17 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
   running.context.set_time_limit(options->time_limit_s);
   running.context.set_max_elements(options->max_elements);
   SYMCELL_TRY(running.context.check());
+  try {
+    check_model(job, parts_.files);
+  } catch (const StoredFileDamaged& damaged) {
+    return fail(ErrorCode::kInternal,
+                std::string(damaged.what()) + "; the server's disk is at fault: submit it again");
+  }
   SYMCELL_TRY(parts_.engine.run(work, running.context));
-  rename_durably(work.statistics, parts_.files.statistics(job.id));
-  rename_durably(work.cell, parts_.files.cell(job.id));
+  if (!publish(job.id)) {
+    running.requeue = true;
+    return fail(ErrorCode::kCancelled, "the server stops");
+  }
   return {};
 }
 
@@ -207,11 +289,14 @@ void JobRunner::keep_fault(const Job& job, const Error& error) {
 }
 
 void JobRunner::settle(const Job& job, Running& running, const Result<void>& result) {
-  JobChange change{.time_ms = now_ms()};
+  // By a clock that nobody sets.
+  const std::int64_t took_ms = steady_ms() - running.started_steady_ms;
+  JobChange change{.time_ms = job.started_ms.value_or(0) + took_ms};
   JobEvent event = JobEvent::kSucceed;
   if (result) {
     change.result_bytes =
         file_bytes(parts_.files.cell(job.id)) + file_bytes(parts_.files.statistics(job.id));
+    change.statistics_sha256 = sha256_of_file(parts_.files.statistics(job.id));
   } else if (result.error().code == ErrorCode::kCancelled) {
     event = running.requeue ? JobEvent::kRequeue : JobEvent::kCancel;
   } else {
@@ -221,9 +306,16 @@ void JobRunner::settle(const Job& job, Running& running, const Result<void>& res
     change.error_json = problem_document(result.error(), "/v1/jobs/" + job.id, "/model")
                             .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   }
-  const auto settled = parts_.store.apply(job.id, event, change);
+  std::optional<Job> settled;
+  const bool written =
+      persist(job.id, [&] { settled = parts_.store.apply(job.id, event, change); });
+  if (!written) {
+    // The row says running, and the next start takes the job up again.
+    parts_.logger.error("job_end_not_written", {{"job", job.id}});
+    return;
+  }
   if (!settled) return;  // deleted while it ran
-  const double seconds = static_cast<double>(change.time_ms - job.started_ms.value_or(0)) / 1000;
+  const double seconds = static_cast<double>(took_ms) / 1000;
   const std::string_view state = job_state_name(settled->state);
   parts_.logger.info(event == JobEvent::kRequeue ? "job_requeued" : "job_finished",
                      {{"job", job.id},

@@ -2,7 +2,8 @@
 //
 // Guarantees: at most `workers` jobs run at once, in order of acceptance; a job that runs has its
 // row in state running; when a worker lets go of a job its row is finished or queued again,
-// whatever the engine did, exceptions included.
+// whatever the engine did, exceptions included. While the store or the disk fails, the worker tries
+// again until it works or the server stops: no job is left behind by a failure that passes.
 #pragma once
 
 #include <atomic>
@@ -11,6 +12,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -51,7 +53,7 @@ class JobRunner {
   void release_reservation();
   // Uses up one reservation.
   void enqueue_reserved(std::string id);
-  // For jobs of an earlier run, which are never refused.
+  // For jobs that were accepted before, which are never refused.
   void enqueue_recovered(std::string id);
 
   enum class CancelResult : std::uint8_t {
@@ -74,13 +76,20 @@ class JobRunner {
  private:
   struct Running {
     ExecutionContext context;
-    std::atomic<bool> requeue{false};  // cancelled because the server stops, not by the user
+    std::int64_t started_steady_ms = 0;  // of the worker's thread
+    std::atomic<bool> requeue{false};    // cancelled because the server stops, not by the user
   };
 
   void post();
   void run_next();
   void remove_files_if_deleted(const std::string& id);
   void execute(const std::string& id, Running& running);
+  // Does `work` again, with longer and longer pauses, while it throws StoreError or what a disk that
+  // is full or gone throws. False: the server stops.
+  [[nodiscard]] bool persist(const std::string& id, const std::function<void()>& work);
+  void count_lost_worker(const std::string& id);
+  // Moves the results to their names.
+  [[nodiscard]] bool publish(const std::string& id);
   [[nodiscard]] Result<void> run_engine(const Job& job, Running& running);
   void keep_fault(const Job& job, const Error& error);
   void settle(const Job& job, Running& running, const Result<void>& result);
@@ -91,7 +100,8 @@ class JobRunner {
 
   // Guards waiting_, running_, reserved_ and stopping_.
   mutable std::mutex mutex_;
-  std::condition_variable idle_;  // running_ became empty
+  std::condition_variable idle_;     // running_ became empty
+  std::condition_variable stopped_;  // stopping_ became true
   std::deque<std::string> waiting_;
   std::map<std::string, std::shared_ptr<Running>, std::less<>> running_;
   std::size_t reserved_ = 0;

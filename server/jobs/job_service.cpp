@@ -1,10 +1,7 @@
 #include "server/jobs/job_service.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -14,24 +11,11 @@
 #include "server/base/files.hpp"
 #include "server/base/identifiers.hpp"
 #include "server/jobs/sqlite_job_store.hpp"
+#include "server/jobs/staged_model.hpp"
+#include "server/jobs/watched_job_store.hpp"
 
 namespace symcell::server {
 namespace {
-
-// A job during which the server died this often is taken for the cause.
-constexpr std::int32_t kMaxCrashes = 3;
-
-// Two servers on one directory would run every job twice. The lock dies with its process.
-int lock_directory(const std::filesystem::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  if (descriptor < 0) throw std::runtime_error("cannot create " + file.string());
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-    ::close(descriptor);
-    throw std::runtime_error("another server uses " + file.parent_path().string() +
-                             "; choose another --data-dir");
-  }
-  return descriptor;
-}
 
 std::string digest_of(const Submission& submission, const std::string& options_json) {
   Sha256 digest;
@@ -39,7 +23,7 @@ std::string digest_of(const Submission& submission, const std::string& options_j
   digest.append("\n");
   digest.append(model_format_info(submission.model_format).name);
   digest.append("\n");
-  FileReader model(submission.model);
+  FileReader model(submission.model, Links::kRefuse);
   for (std::string_view piece = model.next(); !piece.empty(); piece = model.next()) {
     digest.append(piece);
   }
@@ -53,6 +37,16 @@ JobChange failure(const Job& job, const std::string& message) {
           .error_json = problem_document(error, "/v1/jobs/" + job.id, "/model").dump()};
 }
 
+// A row whose model cannot be had is taken back.
+void settle_or_erase(JobStore& store, const JobFiles& files, const std::string& id) {
+  try {
+    settle_model(files, id);
+  } catch (...) {
+    store.erase(id);
+    throw;
+  }
+}
+
 }  // namespace
 
 JobService::JobService(const std::filesystem::path& data_directory,
@@ -64,10 +58,11 @@ JobService::JobService(const std::filesystem::path& data_directory,
       engine_(engine),
       metrics_(metrics),
       logger_(logger),
-      files_(data_directory),
-      lock_descriptor_(lock_directory(files_.lock())) {
-  files_.empty_incoming();
-  store_ = std::make_unique<SqliteJobStore>(files_.database());
+      directory_(data_directory, logger),
+      files_(directory_.path()) {
+  directory_.empty_incoming();
+  store_ = std::make_unique<WatchedJobStore>(
+      std::make_unique<SqliteJobStore>(files_.database(), directory_.id()), metrics_, logger_);
   runner_ = std::make_unique<JobRunner>(
       RunnerParts{engine_, *store_, files_, faults_, changes_, metrics_, logger_}, limits_.workers,
       limits_.queue_limit);
@@ -79,11 +74,22 @@ JobService::~JobService() {
   retention_.reset();
   runner_.reset();
   store_.reset();
-  ::close(lock_descriptor_);
 }
 
 void JobService::start() {
-  files_.sweep([this](const std::string& id) { return store_->find(id).has_value(); });
+  using Fate = DataDirectory::Fate;
+  directory_.sweep_jobs(
+      [this](const std::string& id) {
+        if (const auto staged = staged_job(id)) {
+          if (!store_->find(*staged)) return Fate::kRemove;
+          settle_model(files_, *staged);
+          return Fate::kKeep;
+        }
+        if (store_->find(id)) return Fate::kKeep;
+        return store_->was_erased(id) ? Fate::kRemove : Fate::kUnknown;
+      },
+      [this](const std::string& id) { files_.remove(id); });
+  store_->tidy(std::numeric_limits<std::int64_t>::max());
   for (const Job& job : store_->unfinished()) recover(job);
   retention_ = std::make_unique<RetentionKeeper>(limits_.retention, *store_, files_, logger_);
 }
@@ -93,14 +99,10 @@ void JobService::recover(const Job& job) {
     store_->apply(job.id, JobEvent::kFail, failure(job, "the model's file is lost"));
     return;
   }
+  // A death of the server says nothing of the job: it meshes in a process of its own, whose ends are
+  // counted.
   if (job.state == JobState::kRunning) {
-    if (job.crashes + 1 >= kMaxCrashes) {
-      logger_.error("job_given_up", {{"job", job.id}, {"crashes", std::int64_t{kMaxCrashes}}});
-      store_->apply(job.id, JobEvent::kFail,
-                    failure(job, "the server died repeatedly while it ran this job"));
-      return;
-    }
-    store_->apply(job.id, JobEvent::kRequeue, {.time_ms = now_ms(), .crashed = true});
+    store_->apply(job.id, JobEvent::kRequeue, {.time_ms = now_ms()});
   }
   logger_.info("job_recovered", {{"job", job.id}});
   runner_->enqueue_recovered(job.id);
@@ -168,17 +170,22 @@ SubmitOutcome JobService::store_reserved(const Submission& submission,
   job.model_name = submission.model_name;
   job.options_json = options_json;
   job.model_bytes = static_cast<std::int64_t>(std::filesystem::file_size(submission.model));
+  job.model_sha256 = sha256_of_file(submission.model);
   try {
     files_.adopt_model(submission.model, job.id);
     InsertOutcome inserted = store_->insert(job, key);
-    if (inserted.result != InsertResult::kInserted) files_.remove(job.id);
+    if (inserted.result == InsertResult::kInserted) {
+      settle_or_erase(*store_, files_, job.id);
+    } else {
+      discard_staged(files_, job.id);
+    }
     switch (inserted.result) {
       case InsertResult::kInserted: return {SubmitStatus::kAccepted, std::move(inserted.job)};
       case InsertResult::kReplayed: return {SubmitStatus::kReplayed, std::move(inserted.job)};
       case InsertResult::kConflict: return {SubmitStatus::kKeyConflict, {}};
     }
   } catch (...) {
-    files_.remove(job.id);
+    discard_staged(files_, job.id);
     throw;
   }
   return {SubmitStatus::kKeyConflict, {}};
@@ -208,7 +215,13 @@ std::optional<Job> JobService::cancel(std::string_view id) {
   auto job = find(id);
   if (!job || is_finished(job->state)) return job;
   if (runner_->cancel(id) == JobRunner::CancelResult::kDequeued) {
-    store_->apply(id, JobEvent::kCancel, {.time_ms = now_ms()});
+    try {
+      store_->apply(id, JobEvent::kCancel, {.time_ms = now_ms()});
+    } catch (...) {
+      // Not cancelled, then: it must not be left queued with nobody to run it.
+      runner_->enqueue_recovered(std::string(id));
+      throw;
+    }
     logger_.info("job_cancelled_in_queue", {{"job", id}});
     changes_.notify();
   }
@@ -217,8 +230,8 @@ std::optional<Job> JobService::cancel(std::string_view id) {
 
 bool JobService::erase(std::string_view id) {
   if (!is_job_id(id)) return false;
-  runner_->cancel(id);
   if (!store_->erase(id)) return false;
+  runner_->cancel(id);
   // A worker that still holds the job removes the files when it lets go and finds the row gone.
   if (!runner_->progress(id)) files_.remove(id);
   faults_.remove(id);

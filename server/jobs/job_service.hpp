@@ -17,6 +17,7 @@
 #include "core/base/execution_context.hpp"
 #include "core/model/mesh_options.hpp"
 #include "server/jobs/change_signal.hpp"
+#include "server/jobs/data_directory.hpp"
 #include "server/jobs/job_engine.hpp"
 #include "server/jobs/job_files.hpp"
 #include "server/jobs/job_runner.hpp"
@@ -56,8 +57,8 @@ struct SubmitOutcome {
 
 class JobService {
  public:
-  // Opens or creates the store in `data_directory` and locks the directory; throws
-  // std::runtime_error if another server holds it. No job runs before start().
+  // Takes the directory and opens or creates the store in it; throws std::runtime_error where
+  // DataDirectory does. No job runs before start().
   JobService(const std::filesystem::path& data_directory,
              const JobLimits& limits,
              JobEngine& engine,
@@ -109,9 +110,9 @@ class JobService {
   JobEngine& engine_;
   Metrics& metrics_;
   Logger& logger_;
+  DataDirectory directory_;
   JobFiles files_;
   FaultArchive faults_{files_.faults()};
-  int lock_descriptor_ = -1;
   ChangeSignal changes_;
   std::unique_ptr<JobStore> store_;
   std::unique_ptr<JobRunner> runner_;

@@ -1,12 +1,13 @@
 // Where jobs are kept: an interface, so that an embedded and a shared database can stand behind it.
 //
 // Every call is atomic and, once it returns, durable. Any thread may call. A failing database
-// throws std::runtime_error (see server/base/files.hpp for why).
+// throws StoreError (see server/base/files.hpp for why).
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,18 @@
 #include "server/jobs/job.hpp"
 
 namespace symcell::server {
+
+// The database does not do what it was asked, and has changed nothing: it is locked, full, damaged or
+// gone. What was asked may be asked again.
+class StoreError : public std::runtime_error {
+ public:
+  enum class Kind : std::uint8_t { kBusy, kFull, kDamaged, kOther };
+  StoreError(Kind kind, const std::string& what) : std::runtime_error(what), kind_(kind) {}
+  [[nodiscard]] Kind kind() const { return kind_; }
+
+ private:
+  Kind kind_;
+};
 
 // A caller's promise that requests with the same key are the same request.
 struct IdempotencyKey {
@@ -40,11 +53,13 @@ struct JobFilter {
 
 // What a transition writes besides the state.
 struct JobChange {
+  // By the machine's clock. Where that was set back, a job starts no earlier than it came and ends
+  // no earlier than it started.
   std::int64_t time_ms = 0;
   std::string error_code = {};
   std::string error_json = {};
   std::int64_t result_bytes = 0;
-  bool crashed = false;  // requeue: because the server died
+  std::string statistics_sha256 = {};
 };
 
 struct StoreTotals {
@@ -71,10 +86,23 @@ class JobStore {
   virtual std::optional<Job> apply(std::string_view id,
                                    JobEvent event,
                                    const JobChange& change) = 0;
-  // Forgets the job and its idempotency key; false if it is unknown.
+  // One more worker was killed while it ran this job.
+  virtual void count_lost_worker(std::string_view id) = 0;
+  // Forgets the job and its idempotency key, all but its id; false if it is unknown.
   virtual bool erase(std::string_view id) = 0;
+  // Files may outlive their job if the server dies before it has removed them: whether a job was
+  // erased tells them from files that the database never heard of.
+  [[nodiscard]] virtual bool was_erased(std::string_view id) = 0;
+  // Forgets those erased up to the mark, of which no files are left, and notes the clock. Returns the
+  // mark of now. To be called now and then.
+  virtual std::int64_t tidy(std::int64_t mark) = 0;
+  // Milliseconds of a clock by which ages are measured. It goes on from start to start and never
+  // jumps, whatever is done to the machine's: a start counts the time since the last note as the
+  // machine's clock has it, but not below zero and for a day at most.
+  [[nodiscard]] virtual std::int64_t clock_ms() = 0;
+  // Never waits and never fails.
   [[nodiscard]] virtual StoreTotals totals() = 0;
-  // Throws if the database cannot be read.
+  // Throws if the database cannot be read or written, or does not answer at once.
   virtual void check_health() = 0;
 };
 

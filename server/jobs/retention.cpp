@@ -1,5 +1,6 @@
 #include "server/jobs/retention.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 
@@ -9,6 +10,10 @@ namespace symcell::server {
 namespace {
 
 constexpr std::size_t kBatch = 100;
+// What one sweep, a minute, may remove for its age: this many jobs, or this share (a 20th) of all.
+// Whatever is wrong with ages, there is time to notice it.
+constexpr std::int64_t kLeastPerSweep = 100;
+constexpr std::int64_t kShareOfASweep = 20;
 constexpr std::chrono::minutes kInterval{1};
 
 std::int64_t finished_count(const StoreTotals& totals) {
@@ -21,19 +26,19 @@ std::int64_t finished_count(const StoreTotals& totals) {
 
 }  // namespace
 
-std::size_t apply_retention(const RetentionRules& rules,
-                            JobStore& store,
-                            const JobFiles& files,
-                            std::int64_t time_ms) {
+std::size_t apply_retention(const RetentionRules& rules, JobStore& store, const JobFiles& files) {
   std::size_t removed = 0;
+  const std::int64_t time_ms = store.clock_ms();
   StoreTotals totals = store.totals();
   std::int64_t finished = finished_count(totals);
-  while (true) {
-    const auto oldest = store.oldest_finished(kBatch);
+  std::int64_t may_age = std::max(kLeastPerSweep, finished / kShareOfASweep);
+  // Most often there is nothing to remove, and the oldest one shows it.
+  for (std::size_t batch = 1;; batch = kBatch) {
+    const auto oldest = store.oldest_finished(batch);
     if (oldest.empty()) return removed;
     for (const Job& job : oldest) {
-      const std::int64_t age_ms = time_ms - job.finished_ms.value_or(time_ms);
-      const bool too_old = rules.max_age_s > 0 && age_ms > rules.max_age_s * 1000;
+      const std::int64_t age_ms = time_ms - job.finished_clock_ms.value_or(time_ms);
+      const bool too_old = rules.max_age_s > 0 && age_ms > rules.max_age_s * 1000 && may_age > 0;
       const bool too_many = rules.max_jobs > 0 && finished > rules.max_jobs;
       const bool too_large = rules.max_bytes > 0 && totals.bytes > rules.max_bytes;
       if (!too_old && !too_many && !too_large) return removed;
@@ -42,6 +47,7 @@ std::size_t apply_retention(const RetentionRules& rules,
       files.remove(job.id);
       totals.bytes -= job.model_bytes + job.result_bytes;
       --finished;
+      if (too_old) --may_age;
       ++removed;
     }
   }
@@ -77,7 +83,12 @@ void RetentionKeeper::work(const std::stop_token& stop) {
     }
     if (stop.stop_requested()) return;
     try {
-      const std::size_t removed = apply_retention(rules_, store_, files_, now_ms());
+      const std::size_t removed = apply_retention(rules_, store_, files_);
+      // Those of the sweep before: a worker lets go of its files within a second.
+      if (const std::int64_t now = steady_ms(); now >= tidy_at_ms_) {
+        tidy_at_ms_ = now + std::chrono::milliseconds(kInterval).count();
+        erased_mark_ = store_.tidy(erased_mark_);
+      }
       if (removed > 0) {
         logger_.info("jobs_expired", {{"count", static_cast<std::int64_t>(removed)}});
       }

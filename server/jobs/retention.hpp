@@ -20,11 +20,9 @@ struct RetentionRules {
   std::int64_t max_bytes = 0;  // of all jobs together; finished ones go, oldest first
 };
 
-// Removes what the rules forbid; returns how many jobs went.
-std::size_t apply_retention(const RetentionRules& rules,
-                            JobStore& store,
-                            const JobFiles& files,
-                            std::int64_t time_ms);
+// Removes what the rules forbid, ages by the store's clock; returns how many jobs went. What is too
+// old goes bit by bit, with one call after the other.
+std::size_t apply_retention(const RetentionRules& rules, JobStore& store, const JobFiles& files);
 
 // Applies the rules at start, every minute, and soon after poke().
 class RetentionKeeper {
@@ -44,7 +42,9 @@ class RetentionKeeper {
   std::mutex mutex_;  // guards poked_
   std::condition_variable_any wake_;
   bool poked_ = true;
-  std::jthread thread_;  // last: it uses all of the above
+  std::int64_t erased_mark_ = 0;  // of the thread, as the next
+  std::int64_t tidy_at_ms_ = 0;   // by steady_ms
+  std::jthread thread_;           // last: it uses all of the above
 };
 
 }  // namespace symcell::server

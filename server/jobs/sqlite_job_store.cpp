@@ -1,8 +1,14 @@
 #include "server/jobs/sqlite_job_store.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
@@ -39,12 +45,44 @@ CREATE TABLE idempotency_keys (
 ) STRICT;
 CREATE INDEX idempotency_keys_by_job ON idempotency_keys (job_id);
 )sql",
+    R"sql(
+CREATE TABLE properties (name TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT;
+CREATE TABLE erased (id TEXT PRIMARY KEY) STRICT;
+)sql",
+    // Counted before: deaths of the server, which are no fault of the job's.
+    R"sql(
+ALTER TABLE jobs RENAME COLUMN crashes TO lost_workers;
+UPDATE jobs SET lost_workers = 0 WHERE lost_workers <> 0;
+)sql",
+    R"sql(
+CREATE INDEX jobs_by_end ON jobs (finished_ms, sequence) WHERE finished_ms IS NOT NULL;
+)sql",
+    R"sql(
+ALTER TABLE jobs ADD COLUMN finished_clock_ms INTEGER;
+UPDATE jobs SET finished_clock_ms = finished_ms;
+DROP INDEX jobs_by_end;
+CREATE INDEX jobs_by_end ON jobs (finished_clock_ms, sequence) WHERE finished_clock_ms IS NOT NULL;
+)sql",
+    R"sql(
+ALTER TABLE jobs ADD COLUMN model_sha256 TEXT NOT NULL DEFAULT '';
+ALTER TABLE jobs ADD COLUMN statistics_sha256 TEXT NOT NULL DEFAULT '';
+)sql",
 };
+
+// How long a statement waits for another process that holds the database, a backup for instance.
+// Whoever must not fail for it asks again.
+constexpr int kBusyPatienceMs = 2000;
+// Most that the clock of the store goes on between two servers. A machine whose clock was set a month
+// ahead would else take every job for a month old; so jobs of a server that was down for longer are
+// kept for longer.
+constexpr std::int64_t kMostDownMs = std::int64_t{24} * 3600 * 1000;
+// How long a look at the store's health waits for those that write.
+constexpr std::chrono::milliseconds kHealthPatience{250};
 
 constexpr const char* kColumns =
     "sequence, id, state, created_ms, started_ms, finished_ms, model_format, model_name, "
-    "options_json, error_code, error_json, model_bytes, result_bytes, crashes";
-constexpr const char* kFinished = "('succeeded', 'failed', 'cancelled')";
+    "options_json, error_code, error_json, model_bytes, result_bytes, lost_workers, "
+    "finished_clock_ms, model_sha256, statistics_sha256";
 
 std::string format_name(ModelFormat format) {
   return std::string(model_format_info(format).name);
@@ -77,7 +115,10 @@ Job read_job(SQLite::Statement& row) {
   job.error_json = row.getColumn(10).getString();
   job.model_bytes = row.getColumn(11).getInt64();
   job.result_bytes = row.getColumn(12).getInt64();
-  job.crashes = row.getColumn(13).getInt();
+  job.lost_workers = row.getColumn(13).getInt();
+  job.finished_clock_ms = optional_time(row.getColumn(14));
+  job.model_sha256 = row.getColumn(15).getString();
+  job.statistics_sha256 = row.getColumn(16).getString();
   return job;
 }
 
@@ -103,24 +144,180 @@ void migrate(SQLite::Database& database) {
   }
 }
 
+StoreError::Kind kind_of(const SQLite::Exception& exception) {
+  switch (exception.getErrorCode()) {
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED: return StoreError::Kind::kBusy;
+    case SQLITE_FULL: return StoreError::Kind::kFull;
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB: return StoreError::Kind::kDamaged;
+    default: return StoreError::Kind::kOther;
+  }
+}
+
+template <class Work>
+auto translated(const Work& work) {
+  try {
+    return work();
+  } catch (const SQLite::Exception& exception) {
+    throw StoreError(kind_of(exception), exception.what());
+  }
+}
+
+// SQLite would create it readable for all.
+const std::filesystem::path& create_for_owner(const std::filesystem::path& file) {
+  constexpr mode_t kOwner = S_IRUSR | S_IWUSR;
+  const int created = ::open(file.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, kOwner);
+  if (created < 0) throw std::runtime_error("cannot open the job database " + file.string());
+  // An earlier version left it to the umask.
+  ::fchmod(created, kOwner);
+  ::close(created);
+  return file;
+}
+
+DatabaseFinding examine(SQLite::Database& database) {
+  const std::string fault = database.execAndGet("PRAGMA quick_check(1)").getString();
+  if (fault != "ok") return {DatabaseState::kDamaged, {}, fault};
+  if (database.execAndGet("SELECT COUNT(*) FROM sqlite_schema").getInt() == 0) {
+    return {DatabaseState::kEmpty, {}, {}};
+  }
+  if (!database.tableExists("jobs") || !database.tableExists("idempotency_keys")) {
+    return {DatabaseState::kForeign, {}, {}};
+  }
+  DatabaseFinding finding{DatabaseState::kOurs, {}, {}};
+  if (database.tableExists("properties")) {
+    SQLite::Statement query(database, "SELECT value FROM properties WHERE name = 'directory_id'");
+    if (query.executeStep()) finding.directory_id = query.getColumn(0).getString();
+  }
+  return finding;
+}
+
 }  // namespace
 
+DatabaseFinding examine_job_database(const std::filesystem::path& file) {
+  const auto status = std::filesystem::symlink_status(file);
+  if (!std::filesystem::exists(status)) return {};
+  if (!std::filesystem::is_regular_file(status)) {
+    throw std::runtime_error(file.string() + " should be a file, and no symbolic link");
+  }
+  try {
+    // Writable, for a log that a killed server left is read into the database first.
+    SQLite::Database database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW);
+    database.setBusyTimeout(kBusyPatienceMs);
+    return examine(database);
+  } catch (const SQLite::Exception& exception) {
+    const int code = exception.getErrorCode();
+    if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB) {
+      return {DatabaseState::kDamaged, {}, exception.what()};
+    }
+    throw;
+  }
+}
+
 struct SqliteJobStore::Impl {
-  explicit Impl(const std::filesystem::path& file)
-      : database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
-    database.setBusyTimeout(5000);
+  Impl(const std::filesystem::path& file, const std::string& directory_id, MachineClocks machine)
+      : clocks(std::move(machine)),
+        database(create_for_owner(file).string(), SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW),
+        reader(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW) {
+    reader.setBusyTimeout(kBusyPatienceMs);
+    database.setBusyTimeout(kBusyPatienceMs);
     database.exec("PRAGMA journal_mode = WAL");
     // FULL: a commit is on the disk when it returns; an accepted job is never lost.
     database.exec("PRAGMA synchronous = FULL");
     database.exec("PRAGMA foreign_keys = ON");
     migrate(database);
+    load_totals();
+    start_clock();
+    if (directory_id.empty()) return;
+    SQLite::Statement name(
+        database, "INSERT OR IGNORE INTO properties (name, value) VALUES ('directory_id', ?)");
+    name.bind(1, directory_id);
+    name.exec();
   }
 
-  // Guards `database`: one connection serves all threads, one statement at a time.
-  std::mutex mutex;
-  SQLite::Database database;
+  // Runs `work` with the connection that writes, one at a time.
+  template <class Work>
+  auto write(const Work& work) {
+    const std::lock_guard lock(writing);
+    return translated([&] { return work(database); });
+  }
+  // The same with the connection that reads: a write that waits for a lock holds nobody up.
+  template <class Work>
+  auto read(const Work& work) {
+    const std::lock_guard lock(reading);
+    return translated([&] { return work(reader); });
+  }
 
-  std::optional<Job> find_locked(std::string_view id) {
+  void set_property(const char* name, std::int64_t value) {
+    SQLite::Statement set(database,
+                          "INSERT INTO properties (name, value) VALUES (?, ?) "
+                          "ON CONFLICT (name) DO UPDATE SET value = excluded.value");
+    set.bind(1, name);
+    set.bind(2, std::to_string(value));
+    set.exec();
+  }
+
+  [[nodiscard]] std::optional<std::int64_t> property(const char* name) {
+    SQLite::Statement query(database,
+                            "SELECT CAST(value AS INTEGER) FROM properties WHERE name = ?");
+    query.bind(1, name);
+    if (!query.executeStep()) return std::nullopt;
+    return query.getColumn(0).getInt64();
+  }
+
+  void start_clock() {
+    const auto noted = property("clock_ms");
+    const auto wall = property("clock_noted_at_ms");
+    const std::int64_t now = clocks.wall();
+    const std::int64_t down = wall ? std::clamp<std::int64_t>(now - *wall, 0, kMostDownMs) : 0;
+    clock_base = noted ? *noted + down : now;
+    steady_base = clocks.steady();
+    note_clock();
+  }
+
+  [[nodiscard]] std::int64_t clock_ms() const {
+    return clock_base + (clocks.steady() - steady_base);
+  }
+
+  void note_clock() {
+    set_property("clock_ms", clock_ms());
+    set_property("clock_noted_at_ms", clocks.wall());
+  }
+
+  const MachineClocks clocks;
+  std::int64_t clock_base = 0;  // at steady_base
+  std::int64_t steady_base = 0;
+
+  // Counted once, and from then on with every change: a count over all jobs for every job that comes
+  // would cost the more the more are stored.
+  void load_totals() {
+    SQLite::Statement query(database,
+                            "SELECT state, COUNT(*), SUM(model_bytes + result_bytes) FROM jobs "
+                            "GROUP BY state");
+    while (query.executeStep()) {
+      const auto state = job_state_from_name(query.getColumn(0).getString());
+      if (!state) throw std::runtime_error("the job database holds an unknown state");
+      totals.by_state[static_cast<std::size_t>(*state)] = query.getColumn(1).getInt64();
+      totals.bytes += query.getColumn(2).getInt64();
+    }
+  }
+
+  // `bytes`: of model and results.
+  void count(JobState state, std::int64_t jobs, std::int64_t bytes) {
+    const std::lock_guard lock(counting);
+    totals.by_state[static_cast<std::size_t>(state)] += jobs;
+    totals.bytes += bytes;
+  }
+
+  std::mutex counting;  // guards `totals`
+  StoreTotals totals;
+
+  std::timed_mutex writing;  // guards `database`
+  SQLite::Database database;
+  std::mutex reading;  // guards `reader`
+  SQLite::Database reader;
+
+  static std::optional<Job> find(SQLite::Database& database, std::string_view id) {
     SQLite::Statement query(database,
                             std::string("SELECT ") + kColumns + " FROM jobs WHERE id = ?");
     query.bind(1, std::string(id));
@@ -128,154 +325,221 @@ struct SqliteJobStore::Impl {
     return read_job(query);
   }
 
-  std::optional<InsertOutcome> known_key_locked(const IdempotencyKey& key) {
+  static std::optional<InsertOutcome> known_key(SQLite::Database& database,
+                                                const IdempotencyKey& key) {
     SQLite::Statement query(database, "SELECT digest, job_id FROM idempotency_keys WHERE key = ?");
     query.bind(1, key.key);
     if (!query.executeStep()) return std::nullopt;
     const bool same = query.getColumn(0).getString() == key.digest;
-    const auto job = find_locked(query.getColumn(1).getString());
+    const auto job = find(database, query.getColumn(1).getString());
     if (!job) throw std::runtime_error("an idempotency key without its job");
     return InsertOutcome{same ? InsertResult::kReplayed : InsertResult::kConflict, *job};
   }
 };
 
-SqliteJobStore::SqliteJobStore(const std::filesystem::path& file)
-    : impl_(std::make_unique<Impl>(file)) {
+SqliteJobStore::SqliteJobStore(const std::filesystem::path& file,
+                               const std::string& directory_id,
+                               MachineClocks clocks)
+    : impl_(std::make_unique<Impl>(file, directory_id, std::move(clocks))) {
 }
 
 SqliteJobStore::~SqliteJobStore() = default;
 
 InsertOutcome SqliteJobStore::insert(const Job& job, const std::optional<IdempotencyKey>& key) {
-  const std::lock_guard lock(impl_->mutex);
-  SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
-  if (key) {
-    if (auto known = impl_->known_key_locked(*key)) return *known;
-  }
-  SQLite::Statement insert(impl_->database,
-                           "INSERT INTO jobs (id, state, created_ms, model_format, model_name, "
-                           "options_json, model_bytes) VALUES (?, ?, ?, ?, ?, ?, ?)");
-  insert.bind(1, job.id);
-  insert.bind(2, std::string(job_state_name(job.state)));
-  insert.bind(3, job.created_ms);
-  insert.bind(4, format_name(job.model_format));
-  insert.bind(5, job.model_name);
-  insert.bind(6, job.options_json);
-  insert.bind(7, job.model_bytes);
-  insert.exec();
-  Job stored = job;
-  stored.sequence = impl_->database.getLastInsertRowid();
-  if (key) {
-    SQLite::Statement remember(
-        impl_->database, "INSERT INTO idempotency_keys (key, digest, job_id) VALUES (?, ?, ?)");
-    remember.bind(1, key->key);
-    remember.bind(2, key->digest);
-    remember.bind(3, job.id);
-    remember.exec();
-  }
-  transaction.commit();
-  return {InsertResult::kInserted, stored};
+  return impl_->write([&](SQLite::Database& database) -> InsertOutcome {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    if (key) {
+      if (auto known = Impl::known_key(database, *key)) return *known;
+    }
+    SQLite::Statement insert(database,
+                             "INSERT INTO jobs (id, state, created_ms, model_format, model_name, "
+                             "options_json, model_bytes, model_sha256) "
+                             "VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+    insert.bind(1, job.id);
+    insert.bind(2, std::string(job_state_name(job.state)));
+    insert.bind(3, job.created_ms);
+    insert.bind(4, format_name(job.model_format));
+    insert.bind(5, job.model_name);
+    insert.bind(6, job.options_json);
+    insert.bind(7, job.model_bytes);
+    insert.bind(8, job.model_sha256);
+    insert.exec();
+    Job stored = job;
+    stored.sequence = database.getLastInsertRowid();
+    if (key) {
+      SQLite::Statement remember(
+          database, "INSERT INTO idempotency_keys (key, digest, job_id) VALUES (?, ?, ?)");
+      remember.bind(1, key->key);
+      remember.bind(2, key->digest);
+      remember.bind(3, job.id);
+      remember.exec();
+    }
+    transaction.commit();
+    impl_->count(job.state, 1, job.model_bytes);
+    return {InsertResult::kInserted, stored};
+  });
 }
 
 std::optional<InsertOutcome> SqliteJobStore::find_key(const IdempotencyKey& key) {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->known_key_locked(key);
+  return impl_->read([&](SQLite::Database& database) { return Impl::known_key(database, key); });
 }
 
 std::optional<Job> SqliteJobStore::find(std::string_view id) {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->find_locked(id);
+  return impl_->read([&](SQLite::Database& database) { return Impl::find(database, id); });
 }
 
 std::vector<Job> SqliteJobStore::list(const JobFilter& filter) {
-  const std::lock_guard lock(impl_->mutex);
   std::string sql = std::string("SELECT ") + kColumns + " FROM jobs WHERE sequence < ?";
   if (filter.state) sql += " AND state = ?";
   sql += " ORDER BY sequence DESC LIMIT " + std::to_string(filter.limit);
-  SQLite::Statement query(impl_->database, sql);
-  query.bind(1, filter.before_sequence.value_or(std::numeric_limits<std::int64_t>::max()));
-  if (filter.state) query.bind(2, std::string(job_state_name(*filter.state)));
-  return read_jobs(query);
+  return impl_->read([&](SQLite::Database& database) {
+    SQLite::Statement query(database, sql);
+    query.bind(1, filter.before_sequence.value_or(std::numeric_limits<std::int64_t>::max()));
+    if (filter.state) query.bind(2, std::string(job_state_name(*filter.state)));
+    return read_jobs(query);
+  });
 }
 
 std::vector<Job> SqliteJobStore::unfinished() {
-  const std::lock_guard lock(impl_->mutex);
-  SQLite::Statement query(impl_->database,
-                          std::string("SELECT ") + kColumns +
-                              " FROM jobs WHERE state IN ('queued', 'running') ORDER BY sequence");
-  return read_jobs(query);
+  return impl_->read([&](SQLite::Database& database) {
+    SQLite::Statement query(
+        database, std::string("SELECT ") + kColumns +
+                      " FROM jobs WHERE state IN ('queued', 'running') ORDER BY sequence");
+    return read_jobs(query);
+  });
 }
 
 std::vector<Job> SqliteJobStore::oldest_finished(std::size_t limit) {
-  const std::lock_guard lock(impl_->mutex);
-  SQLite::Statement query(impl_->database, std::string("SELECT ") + kColumns +
-                                               " FROM jobs WHERE state IN " + kFinished +
-                                               " ORDER BY finished_ms, sequence LIMIT " +
-                                               std::to_string(limit));
-  return read_jobs(query);
+  return impl_->read([&](SQLite::Database& database) {
+    SQLite::Statement query(database, std::string("SELECT ") + kColumns +
+                                          " FROM jobs WHERE finished_clock_ms IS NOT NULL ORDER BY "
+                                          "finished_clock_ms, sequence LIMIT " +
+                                          std::to_string(limit));
+    return read_jobs(query);
+  });
 }
 
 std::optional<Job> SqliteJobStore::apply(std::string_view id,
                                          JobEvent event,
                                          const JobChange& change) {
-  const std::lock_guard lock(impl_->mutex);
-  SQLite::Transaction transaction(impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
-  auto job = impl_->find_locked(id);
-  if (!job) return std::nullopt;
-  const auto next = next_state(job->state, event);
-  if (!next) return std::nullopt;
-  job->state = *next;
-  if (event == JobEvent::kStart) job->started_ms = change.time_ms;
-  if (event == JobEvent::kRequeue) {
-    job->started_ms.reset();
-    job->crashes += change.crashed ? 1 : 0;
-  }
-  if (is_finished(*next)) job->finished_ms = change.time_ms;
-  job->error_code = change.error_code;
-  job->error_json = change.error_json;
-  job->result_bytes = change.result_bytes;
+  return impl_->write([&](SQLite::Database& database) -> std::optional<Job> {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    auto job = Impl::find(database, id);
+    if (!job) return std::nullopt;
+    const auto next = next_state(job->state, event);
+    if (!next) return std::nullopt;
+    const JobState state_before = job->state;
+    const std::int64_t bytes_before = job->result_bytes;
+    job->state = *next;
+    if (event == JobEvent::kStart) job->started_ms = std::max(change.time_ms, job->created_ms);
+    if (event == JobEvent::kRequeue) job->started_ms.reset();
+    if (is_finished(*next)) {
+      job->finished_ms = std::max(change.time_ms, job->started_ms.value_or(job->created_ms));
+      job->finished_clock_ms = impl_->clock_ms();
+    }
+    job->error_code = change.error_code;
+    job->error_json = change.error_json;
+    job->result_bytes = change.result_bytes;
+    job->statistics_sha256 = change.statistics_sha256;
 
-  SQLite::Statement update(impl_->database,
-                           "UPDATE jobs SET state = ?, started_ms = ?, finished_ms = ?, "
-                           "error_code = ?, error_json = ?, result_bytes = ?, crashes = ? "
-                           "WHERE id = ?");
-  update.bind(1, std::string(job_state_name(job->state)));
-  if (job->started_ms) update.bind(2, *job->started_ms);
-  if (job->finished_ms) update.bind(3, *job->finished_ms);
-  update.bind(4, job->error_code);
-  update.bind(5, job->error_json);
-  update.bind(6, job->result_bytes);
-  update.bind(7, job->crashes);
-  update.bind(8, job->id);
-  update.exec();
-  transaction.commit();
-  return job;
+    SQLite::Statement update(database,
+                             "UPDATE jobs SET state = ?, started_ms = ?, finished_ms = ?, "
+                             "error_code = ?, error_json = ?, result_bytes = ?, "
+                             "finished_clock_ms = ?, statistics_sha256 = ? WHERE id = ?");
+    update.bind(1, std::string(job_state_name(job->state)));
+    if (job->started_ms) update.bind(2, *job->started_ms);
+    if (job->finished_ms) update.bind(3, *job->finished_ms);
+    update.bind(4, job->error_code);
+    update.bind(5, job->error_json);
+    update.bind(6, job->result_bytes);
+    if (job->finished_clock_ms) update.bind(7, *job->finished_clock_ms);
+    update.bind(8, job->statistics_sha256);
+    update.bind(9, job->id);
+    update.exec();
+    transaction.commit();
+    impl_->count(state_before, -1, 0);
+    impl_->count(job->state, 1, job->result_bytes - bytes_before);
+    return job;
+  });
+}
+
+void SqliteJobStore::count_lost_worker(std::string_view id) {
+  impl_->write([&](SQLite::Database& database) {
+    SQLite::Statement update(database,
+                             "UPDATE jobs SET lost_workers = lost_workers + 1 WHERE id = ?");
+    update.bind(1, std::string(id));
+    update.exec();
+  });
 }
 
 bool SqliteJobStore::erase(std::string_view id) {
-  const std::lock_guard lock(impl_->mutex);
-  SQLite::Statement erase(impl_->database, "DELETE FROM jobs WHERE id = ?");
-  erase.bind(1, std::string(id));
-  return erase.exec() > 0;
+  return impl_->write([&](SQLite::Database& database) {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    const auto job = Impl::find(database, id);
+    if (!job) return false;
+    SQLite::Statement erase(database, "DELETE FROM jobs WHERE id = ?");
+    erase.bind(1, std::string(id));
+    erase.exec();
+    SQLite::Statement remember(database, "INSERT OR IGNORE INTO erased (id) VALUES (?)");
+    remember.bind(1, std::string(id));
+    remember.exec();
+    transaction.commit();
+    impl_->count(job->state, -1, -(job->model_bytes + job->result_bytes));
+    return true;
+  });
+}
+
+bool SqliteJobStore::was_erased(std::string_view id) {
+  return impl_->read([&](SQLite::Database& database) {
+    SQLite::Statement query(database, "SELECT 1 FROM erased WHERE id = ?");
+    query.bind(1, std::string(id));
+    return query.executeStep();
+  });
+}
+
+std::int64_t SqliteJobStore::tidy(std::int64_t mark) {
+  return impl_->write([&](SQLite::Database& database) {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    SQLite::Statement forget(database, "DELETE FROM erased WHERE rowid <= ?");
+    forget.bind(1, mark);
+    forget.exec();
+    impl_->note_clock();
+    const std::int64_t newest =
+        database.execAndGet("SELECT COALESCE(MAX(rowid), 0) FROM erased").getInt64();
+    transaction.commit();
+    return newest;
+  });
+}
+
+std::int64_t SqliteJobStore::clock_ms() {
+  return impl_->clock_ms();
 }
 
 StoreTotals SqliteJobStore::totals() {
-  const std::lock_guard lock(impl_->mutex);
-  StoreTotals totals;
-  SQLite::Statement query(impl_->database,
-                          "SELECT state, COUNT(*), SUM(model_bytes + result_bytes) FROM jobs "
-                          "GROUP BY state");
-  while (query.executeStep()) {
-    if (const auto state = job_state_from_name(query.getColumn(0).getString())) {
-      totals.by_state[static_cast<std::size_t>(*state)] = query.getColumn(1).getInt64();
-    }
-    totals.bytes += query.getColumn(2).getInt64();
-  }
-  return totals;
+  const std::lock_guard lock(impl_->counting);
+  return impl_->totals;
 }
 
 void SqliteJobStore::check_health() {
-  const std::lock_guard lock(impl_->mutex);
-  impl_->database.execAndGet("SELECT COUNT(*) FROM (SELECT 1 FROM jobs LIMIT 1)");
+  impl_->read([](SQLite::Database& database) {
+    static_cast<void>(database.execAndGet("SELECT COUNT(*) FROM (SELECT 1 FROM jobs LIMIT 1)"));
+  });
+  std::unique_lock lock(impl_->writing, kHealthPatience);
+  if (!lock) throw StoreError(StoreError::Kind::kBusy, "writes to the job database do not end");
+  translated([&] {
+    SQLite::Database& database = impl_->database;
+    // Whoever asks wants to know now, not to wait until it is well again.
+    database.setBusyTimeout(0);
+    try {
+      database.exec(
+          "INSERT INTO properties (name, value) VALUES ('probe', '0') "
+          "ON CONFLICT (name) DO UPDATE SET value = 1 - value");
+    } catch (...) {
+      database.setBusyTimeout(kBusyPatienceMs);
+      throw;
+    }
+    database.setBusyTimeout(kBusyPatienceMs);
+  });
 }
 
 }  // namespace symcell::server

@@ -4,17 +4,49 @@
 // refuses newer ones.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <string>
 
+#include "server/base/clock.hpp"
 #include "server/jobs/job_store.hpp"
 
 namespace symcell::server {
 
+enum class DatabaseState : std::uint8_t {
+  kMissing,
+  kEmpty,    // nothing in it, as a database that was truncated or never written
+  kOurs,     // of any version
+  kForeign,  // sound, and with tables, but without jobs
+  kDamaged,
+};
+
+struct DatabaseFinding {
+  DatabaseState state = DatabaseState::kMissing;
+  std::string directory_id;  // of kOurs; empty: written by a version that gave none
+  std::string fault;         // of kDamaged
+};
+
+// Reads all of the file and changes nothing.  Throws std::runtime_error if it cannot be read (no
+// rights, a symbolic link, an error of the disk), which says nothing about its contents.
+[[nodiscard]] DatabaseFinding examine_job_database(const std::filesystem::path& file);
+
+// The machine's clocks, in milliseconds; tests have their own.
+struct MachineClocks {
+  std::function<std::int64_t()> wall = now_ms;
+  std::function<std::int64_t()> steady = steady_ms;
+};
+
 class SqliteJobStore final : public JobStore {
  public:
-  // Throws std::runtime_error if the file is no database of ours or of a newer version.
-  explicit SqliteJobStore(const std::filesystem::path& file);
+  // Creates the file, for its owner alone, if it is missing.  `directory_id`: written to a database
+  // that has none.  Throws std::runtime_error if the file is no database of ours or of a newer
+  // version.
+  explicit SqliteJobStore(const std::filesystem::path& file,
+                          const std::string& directory_id = {},
+                          MachineClocks clocks = {});
   ~SqliteJobStore() override;
 
   InsertOutcome insert(const Job& job, const std::optional<IdempotencyKey>& key) override;
@@ -24,7 +56,11 @@ class SqliteJobStore final : public JobStore {
   [[nodiscard]] std::vector<Job> unfinished() override;
   [[nodiscard]] std::vector<Job> oldest_finished(std::size_t limit) override;
   std::optional<Job> apply(std::string_view id, JobEvent event, const JobChange& change) override;
+  void count_lost_worker(std::string_view id) override;
   bool erase(std::string_view id) override;
+  [[nodiscard]] bool was_erased(std::string_view id) override;
+  std::int64_t tidy(std::int64_t mark) override;
+  [[nodiscard]] std::int64_t clock_ms() override;
   [[nodiscard]] StoreTotals totals() override;
   void check_health() override;
 

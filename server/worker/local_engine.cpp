@@ -27,7 +27,7 @@ Result<void> write_cell(const SymmetryCellMesh& mesh, const std::filesystem::pat
 Result<void> LocalEngine::run(const EngineJob& job, ExecutionContext& context) {
   Stopwatch total, watch;
   context.report(Phase::kParse, 0);
-  const auto model = read_model(MappedFile(job.model).bytes(), job.model_format);
+  const auto model = read_model(MappedFile(job.model, Links::kRefuse).bytes(), job.model_format);
   if (!model) return error_of(model);
   const double parse_ms = watch.lap();
 
@@ -54,7 +54,7 @@ Result<ModelFormat> LocalEngine::recognise(const std::filesystem::path& path,
                                            std::optional<ModelFormat> promised,
                                            ExecutionContext& /*context*/) {
   ModelFormat format{};
-  const auto model = read_model(MappedFile(path).bytes(), promised, &format);
+  const auto model = read_model(MappedFile(path, Links::kRefuse).bytes(), promised, &format);
   if (!model) return error_of(model);
   return format;
 }
@@ -63,7 +63,7 @@ Result<std::string> LocalEngine::inspect(const std::filesystem::path& path,
                                          ModelFormat format,
                                          const MeshOptions& options,
                                          ExecutionContext& context) {
-  const auto model = read_model(MappedFile(path).bytes(), format);
+  const auto model = read_model(MappedFile(path, Links::kRefuse).bytes(), format);
   if (!model) return error_of(model);
   const auto inspection = inspect_model(*model, options, context);
   if (!inspection) return error_of(inspection);

@@ -85,6 +85,8 @@ void apply_limits(const WorkerLimits& limits) {
   if (kSanitized) return;
   static const SoftLimit memory(RLIMIT_DATA);
   static const SoftLimit processor(RLIMIT_CPU);
+  static const SoftLimit file(RLIMIT_FSIZE);
+  file.set(limits.file_bytes == 0 ? RLIM_INFINITY : limits.file_bytes);
   memory.set(limits.memory_bytes == 0 ? RLIM_INFINITY : limits.memory_bytes);
   // The kernel counts from the start of the process, and not finer than seconds.
   processor.set(limits.cpu_seconds == 0 ? RLIM_INFINITY

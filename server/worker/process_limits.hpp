@@ -12,6 +12,7 @@ namespace symcell::server {
 struct WorkerLimits {
   std::uint64_t memory_bytes = 0;
   std::uint64_t cpu_seconds = 0;
+  std::uint64_t file_bytes = 0;  // of each file it writes
   friend bool operator==(const WorkerLimits&, const WorkerLimits&) = default;
 };
 
@@ -33,7 +34,7 @@ void die_with_parent(pid_t parent);
 [[noreturn]] void end_process_group();
 
 // For the request that begins now: memory (heap and private mappings, not mapped files) and
-// processor time from now on; 0: none. Not under sanitizers, whose shadow memory passes any limit.
+// processor time from now on, bytes of a file; 0: none. Not under sanitizers, whose shadow memory passes any limit.
 void apply_limits(const WorkerLimits& limits);
 
 // The peak of resident memory is counted from here on; see peak_resident_bytes.

@@ -71,6 +71,7 @@ Json to_json(const RequestMessage& request) {
   json["statistics"] = path_to_text(request.job.statistics);
   json["memory_bytes"] = request.limits.memory_bytes;
   json["cpu_seconds"] = request.limits.cpu_seconds;
+  json["file_bytes"] = request.limits.file_bytes;
   return json;
 }
 
@@ -113,7 +114,7 @@ Result<WorkerMessage> request_from_json(const nlohmann::json& json) {
   request.job.options = *options;
   request.job.cell = path_from_text(json.at("cell"));
   request.job.statistics = path_from_text(json.at("statistics"));
-  request.limits = {json.at("memory_bytes"), json.at("cpu_seconds")};
+  request.limits = {json.at("memory_bytes"), json.at("cpu_seconds"), json.at("file_bytes")};
   return request;
 }
 

@@ -26,6 +26,11 @@ constexpr std::size_t kHeadBytes = 16384;  // that show a drawing, comments befo
 // What a job may take beyond its time limit before the kernel ends it, should the server not.
 constexpr std::uint64_t kCpuMarginSeconds = 5;
 
+// A cell of quadratic tetrahedra takes some 150 bytes an element. What a child of TetGen's hands back is
+// a file too, in memory, and as large as the model that it was given is.
+constexpr std::uint64_t kLeastFileBytes = std::uint64_t{4} << 30U;
+constexpr std::uint64_t kMostBytesPerElement = 1024;
+
 class LargeRead {
  public:
   explicit LargeRead(std::counting_semaphore<>& places) : places_(places) { places_.acquire(); }
@@ -56,7 +61,8 @@ WorkerLimits WorkerEngine::limits_of(const MeshOptions& options) const {
         static_cast<std::uint64_t>(std::ceil(options.time_limit_s)) + kCpuMarginSeconds;
     cpu_seconds = lower_limit(cpu_seconds, by_time);
   }
-  return {lower_limit(settings_.memory_bytes, options.memory_limit_bytes), cpu_seconds};
+  return {lower_limit(settings_.memory_bytes, options.memory_limit_bytes), cpu_seconds,
+          kLeastFileBytes + options.max_elements * kMostBytesPerElement};
 }
 
 TaskOutcome WorkerEngine::run_once(const RequestMessage& request, ExecutionContext& context) {
@@ -78,11 +84,12 @@ TaskOutcome WorkerEngine::run_once(const RequestMessage& request, ExecutionConte
 
 Result<std::string> WorkerEngine::run_request(const RequestMessage& request,
                                               ExecutionContext& context) {
-  for (int tries = 1;; ++tries) {
+  for (int tries = request.job.lost_workers + 1;; ++tries) {
     TaskOutcome outcome = run_once(request, context);
-    const bool again =
-        outcome.end == EndKind::kOutside && tries < kMaxTries && !context.cancelled();
-    if (!again) return std::move(outcome.document);
+    const bool lost = outcome.end == EndKind::kOutside && !context.cancelled();
+    // Counted where it lasts: three tries are meant in all, not after each start of the server.
+    if (lost && request.job.on_lost_worker) request.job.on_lost_worker();
+    if (!lost || tries >= kMaxTries) return std::move(outcome.document);
     std::error_code ignored;
     std::filesystem::remove(request.job.cell, ignored);
     std::filesystem::remove(request.job.statistics, ignored);

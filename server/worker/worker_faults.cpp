@@ -1,5 +1,9 @@
 #include "server/worker/worker_faults.hpp"
 
+#include <sched.h>
+#include <sys/ptrace.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -34,6 +38,24 @@ void take_all_memory() {
   }
 }
 
+// What no mesher needs; ends the process if it can be done.
+void use_rights() {
+  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::string program = "/bin/true";
+    char* const arguments[] = {program.data(), nullptr};
+    ::execv(program.c_str(), arguments);
+    ::_exit(1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  const bool ran = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  const bool traced = ::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) == 0;
+  const bool unshared = ::unshare(CLONE_NEWUSER) == 0;
+  if (socket >= 0 || ran || traced || unshared) std::abort();
+}
+
 }  // namespace
 
 void fault_on_purpose(std::uint64_t seed) {
@@ -43,6 +65,7 @@ void fault_on_purpose(std::uint64_t seed) {
   if (fault == "abort") std::abort();
   if (fault == "exit") ::_exit(3);
   if (fault == "memory") take_all_memory();
+  if (fault == "rights") use_rights();
   if (fault == "hang") {
     volatile bool forever = true;
     while (forever) {

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <condition_variable>
+#include <cstdio>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -21,6 +22,7 @@
 #include "server/worker/heap.hpp"
 #include "server/worker/local_engine.hpp"
 #include "server/worker/process_limits.hpp"
+#include "server/worker/process_rights.hpp"
 #include "server/worker/protocol.hpp"
 #include "server/worker/worker_faults.hpp"
 
@@ -185,6 +187,9 @@ int run_worker(int socket, pid_t parent) {
   prepare_worker_process();
   prepare_heap();
   die_with_parent(parent);
+  if (!give_up_rights()) {
+    std::fputs("the kernel filters no system calls: this worker may make any\n", stderr);
+  }
   // The mesher may start processes of its own; the connection is not theirs.
   ::fcntl(socket, F_SETFD, FD_CLOEXEC);
   Worker(socket).run();

@@ -223,9 +223,13 @@ TaskOutcome WorkerProcess::run(const RequestMessage& request, ExecutionContext& 
   }
   bool cancelled = false;
   while (true) {
-    wait_for_event(kTick);
     read_last_words();
-    const MessageChannel::Received received = channel_->receive();
+    // Waited for only when all that has come was looked at: frames arrive together.
+    MessageChannel::Received received = channel_->receive();
+    if (received.status == MessageChannel::Status::kNothing) {
+      wait_for_event(kTick);
+      received = channel_->receive();
+    }
     if (received.status == MessageChannel::Status::kMessage) {
       if (const auto* reported = std::get_if<ProgressMessage>(&received.message)) {
         const Progress& p = reported->progress;

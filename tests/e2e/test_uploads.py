@@ -148,7 +148,7 @@ class UploadsTest(unittest.TestCase):
 
     def test_a_post_without_any_body_does_not_hang(self):
         with socket.create_connection(("127.0.0.1", self.server.port), timeout=10) as connection:
-            connection.sendall(b"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n")
+            connection.sendall(b"POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")
             answer = b""
             while piece := connection.recv(4096):
                 answer += piece
@@ -158,7 +158,7 @@ class UploadsTest(unittest.TestCase):
     def test_a_client_that_leaves_in_the_middle_does_no_harm(self):
         for _ in range(50):
             with socket.create_connection(("127.0.0.1", self.server.port), timeout=10) as connection:
-                connection.sendall(b"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Length: 100000\r\n\r\nhalf")
+                connection.sendall(b"POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Length: 100000\r\n\r\nhalf")
         self.assertEqual(self.server.get("/healthz").status, 200)
         self.accepted("/v1/jobs", "--data-binary", f"@{self.model}")
 

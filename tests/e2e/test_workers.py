@@ -9,10 +9,10 @@ import subprocess
 import time
 import unittest
 
-from symcell_server import Server, binary, long_options, square, until, without_sanitizer
+from symcell_server import Server, binary, box, long_options, square, until, without_sanitizer
 
-CRASH, ABORT, HANG, MEMORY, EXIT = 1001, 1002, 1003, 1004, 1005
-FAULTS = f"crash={CRASH},abort={ABORT},hang={HANG},memory={MEMORY},exit={EXIT}"
+CRASH, ABORT, HANG, MEMORY, EXIT, RIGHTS = 1001, 1002, 1003, 1004, 1005, 1006
+FAULTS = f"crash={CRASH},abort={ABORT},hang={HANG},memory={MEMORY},exit={EXIT},rights={RIGHTS}"
 
 
 def processes():
@@ -113,6 +113,32 @@ class WorkersTest(unittest.TestCase):
         self.assert_works()
         self.assertEqual(self.ends("outside"), 3)
 
+    def test_killed_workers_are_counted_across_deaths_of_the_server_which_are_not(self):
+        self.start()
+        job_id = self.running(long_options())
+        killed = set()
+
+        def kill_worker():
+            self.server.reaches(job_id, "running")
+            victim = self.busy_worker(killed)
+            killed.add(victim)
+            os.kill(victim, signal.SIGKILL)
+
+        for _ in range(4):
+            killed.add(self.busy_worker(killed))
+            self.server.kill()
+            self.server.start({"SYMCELL_WORKER_FAULTS": FAULTS})
+            self.server.reaches(job_id, "running")
+        kill_worker()
+        kill_worker()
+        killed.add(self.busy_worker(killed))
+        self.server.kill()
+        self.server.start({"SYMCELL_WORKER_FAULTS": FAULTS})
+        kill_worker()
+        job = self.server.finished(job_id)
+        self.assertEqual(job["error"]["code"], "worker_crashed", job)
+        self.assertIn("SIGKILL", job["error"]["detail"])
+
     @without_sanitizer
     def test_the_memory_limit_is_told(self):
         self.start(worker_memory=200 << 20)
@@ -208,6 +234,21 @@ class WorkersTest(unittest.TestCase):
             self.assertFalse([t for t in targets.values() if "sqlite" in t or t.endswith("/lock")], targets)
             status = pathlib.Path(f"/proc/{pid}/status").read_text()
             self.assertRegex(status, r"SigBlk:\s+0+\n")
+            if not os.environ.get("SYMCELL_SANITIZE"):
+                until(lambda: re.search(r"Seccomp:\s+2\n", pathlib.Path(f"/proc/{pid}/status").read_text()),
+                      "system calls are filtered")
+            self.assertRegex(pathlib.Path(f"/proc/{pid}/status").read_text(), r"NoNewPrivs:\s+1\n")
+            self.assertRegex(limits_of(pid), r"Max open files\s+64\s+64\s")
+        busy = self.busy_worker()
+        until(lambda: re.search(r"Max file size\s+\d+\s", limits_of(busy)) or os.environ.get("SYMCELL_SANITIZE"),
+              "files have a largest size")
+
+    @without_sanitizer
+    def test_workers_can_do_nothing_but_mesh(self):
+        self.start()
+        job = self.faulty(RIGHTS)
+        self.assertEqual(job["state"], "succeeded", job)
+        self.assertEqual(self.server.finished(self.server.submit(box())["id"])["state"], "succeeded")
 
     def test_closed_standard_streams_do_no_harm(self):
         server = Server(workers=1)

@@ -86,10 +86,125 @@ TEST_F(ProtocolHttpTest, AmbiguousFramingIsRefused) {
   EXPECT_TRUE(unknown.starts_with("HTTP/1.1 501 ")) << unknown;
 }
 
+// Each of these has two readings, and a proxy may have the other one.
+TEST_F(ProtocolHttpTest, HeadsOfTwoReadingsAreRefusedAndTheConnectionEnds) {
+  const std::string next = "GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n";
+  const std::string length = std::to_string(next.size());
+  for (const std::string& fields : std::vector<std::string>{
+           "Host: x\r\nContent-Length : " + length,
+           "Host: x\r\nContent-Length\t: " + length,
+           "Host: x\r\nContent-Length:\r\n " + length,
+           "Host: x\r\nA: b\r\n\tContent-Length: " + length,
+           "Host: x\r\nContent-Length: 5, 5",
+           "Host: x\r\nContent-Length: +5",
+           "Host: x\r\nContent-Length: 0x5",
+           "Host: x\r\nContent-Length:",
+           "Host: x\r\nTransfer-Encoding: chunked\r\nTransfer-Encoding: chunked",
+           "Host: x\r\n" + std::string("Conte\0nt-Length: 5", 19),
+           "Host: x\r\n" + std::string("A: b\0c", 7),
+           std::string("Host: x\r\nA: b\rContent-Length: 5"),
+           std::string("Host: x\nContent-Length: 5"),
+           std::string("Host: x\r\n: nameless"),
+           std::string("Host: x\r\nno colon"),
+           std::string("Host: x\r\nHost: y"),
+           std::string("Host: x\r\nHost: x"),
+           std::string("Host: x y"),
+           std::string("Host: x/y"),
+           std::string("Host: a@x"),
+           std::string("Accept: */*"),
+       }) {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::string answer = exchange("POST /v1/jobs HTTP/1.1\r\n" + fields + "\r\n\r\n" + next);
+    EXPECT_TRUE(answer.starts_with("HTTP/1.1 400 ")) << fields << "\n" << answer;
+    EXPECT_NE(answer.find("application/problem+json"), std::string::npos) << fields;
+    EXPECT_EQ(answer.find("200 OK"), std::string::npos) << fields << "\n" << answer;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(4)) << fields;
+  }
+  for (const char* line :
+       {"GET  / HTTP/1.1", "GET / HTTP/1.1 ", "GET /\t HTTP/1.1", " GET / HTTP/1.1",
+        "G(T / HTTP/1.1", "GET / HTTP/2.0", "GET / http/1.1", "GET /"}) {
+    const std::string answer = exchange(std::string(line) + "\r\nHost: x\r\n\r\n" + next);
+    EXPECT_TRUE(answer.starts_with("HTTP/1.1 400 ")) << line << "\n" << answer;
+    EXPECT_EQ(answer.find("200 OK"), std::string::npos) << line;
+  }
+}
+
+TEST_F(ProtocolHttpTest, ChunksOfTwoReadingsAreRefusedAtOnce) {
+  const std::string head =
+      "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: text/plain\r\n"
+      "Transfer-Encoding: chunked\r\n\r\n";
+  for (const std::string& chunk :
+       {std::string("-5\r\nhello\r\n0\r\n\r\n"), std::string("+5\r\nhello\r\n0\r\n\r\n"),
+        std::string("0x5\r\nhello\r\n0\r\n\r\n"), std::string(" 5\r\nhello\r\n0\r\n\r\n"),
+        std::string("5 \r\nhello\r\n0\r\n\r\n"), std::string("5\nhello\r\n0\r\n\r\n"),
+        std::string("5\r\nhello!\r\n0\r\n\r\n"), std::string("\r\nhello"),
+        std::string("g\r\nhello"), std::string(4000, 'f'), std::string(4000, '0'),
+        "5;" + std::string(4000, 'x')}) {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::string answer = exchange(head + chunk);
+    EXPECT_TRUE(answer.starts_with("HTTP/1.1 400 ")) << chunk.substr(0, 40) << "\n" << answer;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(4))
+        << chunk.substr(0, 40);
+  }
+}
+
+TEST_F(ProtocolHttpTest, WhatTheGrammarAllowsIsTaken) {
+  const std::string head = "POST /v1/jobs HTTP/1.1\r\nHost:x\r\nContent-Type:  text/plain \r\n";
+  const std::string model = square_json();
+  char size[32];
+  std::snprintf(size, sizeof size, "%zX;a=b\r\n", model.size());
+  const std::string chunked =
+      exchange("\r\n" + head + "Transfer-Encoding: Chunked\r\nConnection: close\r\n\r\n" + size +
+               model + "\r\n0\r\n\r\n");
+  EXPECT_TRUE(chunked.starts_with("HTTP/1.1 202 ")) << chunked;
+  const std::string plain = exchange(head + "Content-Length: 00" + std::to_string(model.size()) +
+                                     "\r\nConnection: close\r\n\r\n" + model);
+  EXPECT_TRUE(plain.starts_with("HTTP/1.1 202 ")) << plain;
+  EXPECT_TRUE(exchange("GET /healthz HTTP/1.0\r\n\r\n").starts_with("HTTP/1.1 200 "));
+}
+
+// A megabyte is the limit here.
+TEST_F(ProtocolHttpTest, ABodyThatIsTooLargeIsRefusedBeforeItIsSent) {
+  for (const char* path : {"/v1/jobs", "/v1/inspect"}) {
+    for (const char* length : {"540000000", "999999999999999999999999"}) {
+      RawConnection connection(port());
+      connection.send("POST " + std::string(path) +
+                      " HTTP/1.1\r\nHost: x\r\nContent-Type: text/plain\r\n"
+                      "Expect: 100-continue\r\nContent-Length: " +
+                      length + "\r\n\r\n");
+      const std::string answer = connection.receive_until("body_too_large");
+      EXPECT_TRUE(answer.starts_with("HTTP/1.1 413 ")) << answer;
+      EXPECT_EQ(answer.find("100 Continue"), std::string::npos) << answer;
+    }
+  }
+  RawConnection connection(port());
+  connection.send(
+      "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: text/plain\r\nExpect: 100-continue\r\n"
+      "Content-Length: " +
+      std::to_string(square_json().size()) + "\r\n\r\n");
+  EXPECT_TRUE(connection.receive_until("\r\n\r\n").starts_with("HTTP/1.1 100 "));
+  connection.send(square_json());
+  EXPECT_TRUE(connection.receive_until("\r\n\r\n").starts_with("HTTP/1.1 202 "));
+}
+
+// Many clients look for an answer only when all is sent.
+TEST_F(ProtocolHttpTest, AClientThatSendsAllOfALargeBodyFirstCanReadItsRefusal) {
+  constexpr std::size_t kBytes = 200UL << 20U;
+  RawConnection connection(port());
+  ASSERT_TRUE(
+      connection.send("POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: text/plain\r\n"
+                      "Content-Length: " +
+                      std::to_string(kBytes) + "\r\n\r\n"));
+  const std::string piece(1UL << 20U, 'x');
+  for (std::size_t sent = 0; sent < kBytes; sent += piece.size())
+    ASSERT_TRUE(connection.send(piece)) << sent;
+  EXPECT_TRUE(connection.receive_until("body_too_large").starts_with("HTTP/1.1 413 "));
+}
+
 TEST_F(ProtocolHttpTest, GarbageAndEndlessHeadersAreRefused) {
   EXPECT_TRUE(exchange("this is not http\r\n\r\n").starts_with("HTTP/1.1 400 "));
-  EXPECT_TRUE(exchange("GET / HTTP/1.1\r\nX: " + std::string(200'000, 'x')).find("200 OK") ==
-              std::string::npos);
+  EXPECT_TRUE(
+      exchange("GET / HTTP/1.1\r\nX: " + std::string(200'000, 'x')).starts_with("HTTP/1.1 431 "));
   EXPECT_TRUE(exchange("GET /" + std::string(20'000, 'x') + " HTTP/1.1\r\n\r\n")
                   .starts_with("HTTP/1.1 414 "));
   std::string many = "GET / HTTP/1.1\r\n";
@@ -110,18 +225,74 @@ TEST_F(ProtocolHttpTest, IdleConnectionsMakeWay) {
   }
 }
 
-TEST_F(ProtocolHttpTest, ConnectionsBeyondTheQueueAreRefusedAtOnce) {
+// Far more than there are threads: silent, idle, in the middle of a head, of a small body, of a large
+// one.
+TEST_F(ProtocolHttpTest, SlowClientsHoldNobodyUp) {
+  std::vector<std::unique_ptr<RawConnection>> slow;
+  const auto add = [&](const std::string& bytes) {
+    slow.push_back(std::make_unique<RawConnection>(port()));
+    slow.back()->send(bytes);
+  };
+  const std::string post =
+      "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: text/plain\r\nContent-Length: ";
+  for (int i = 0; i < 40; ++i) {
+    add("");
+    add("GET /healthz HTTP/1.1\r\n");
+    add(post + "1000\r\n\r\nhalf");
+  }
+  // As many as there are threads for such.
+  for (int i = 0; i < 8; ++i) add(post + "1000000\r\n\r\nhalf");
+  for (int i = 0; i < 5; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (const char* path : {"/healthz", "/readyz", "/metrics", "/v1/jobs"}) {
+      const auto answer = client().Get(path);
+      ASSERT_TRUE(answer) << path;
+      EXPECT_EQ(answer->status, 200) << path;
+    }
+    EXPECT_EQ(client().Post("/v1/jobs", job_body(), "application/json")->status, 202);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+  }
+}
+
+class FewConnectionsHttpTest : public ProtocolHttpTest {
+ protected:
+  void configure(ServiceSettings& settings) override {
+    settings.http.lobby.connections = 50;
+    settings.http.lobby.connections_per_client = 50;
+  }
+};
+
+TEST_F(FewConnectionsHttpTest, ConnectionsBeyondTheLimitAreRefusedAtOnceUnlessAnIdleOneMakesWay) {
   std::vector<std::unique_ptr<RawConnection>> held;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 50; ++i) {
     held.push_back(std::make_unique<RawConnection>(port()));
     held.back()->send("GET /healthz HTTP/1.1\r\n");  // and never finishes
   }
-  // A probe that is not refused stays, and takes the place that it found.
-  ASSERT_TRUE(eventually([&] {
-    held.push_back(std::make_unique<RawConnection>(port(), std::chrono::milliseconds(100)));
-    held.back()->send("GET /healthz HTTP/1.1\r\nConnection: close\r\n\r\n");
-    return held.back()->receive_until("\r\n").starts_with("HTTP/1.1 503 ");
-  }));
+  ASSERT_TRUE(eventually(
+      [&] { return exchange("GET /healthz HTTP/1.0\r\n\r\n").starts_with("HTTP/1.1 503 "); }));
+  held[0]->send("Host: x\r\n\r\n");
+  EXPECT_NE(held[0]->receive_until("ok\n").find("200 OK"), std::string::npos);
+  EXPECT_TRUE(eventually(
+      [&] { return exchange("GET /healthz HTTP/1.0\r\n\r\n").starts_with("HTTP/1.1 200 "); }));
+}
+
+TEST_F(ProtocolHttpTest, AClientThatClosesItsSideIsAnswered) {
+  RawConnection connection(port());
+  connection.send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
+  connection.close_sending();
+  EXPECT_NE(connection.receive_all().find("200 OK"), std::string::npos);
+}
+
+TEST_F(ProtocolHttpTest, RequestsThatComeTogetherAreAnsweredInTurn) {
+  std::string several;
+  for (int i = 0; i < 5; ++i) several += "GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n";
+  const std::string answers =
+      exchange(several + "GET /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  std::size_t count = 0;
+  for (std::size_t at = answers.find("200 OK"); at != std::string::npos;
+       at = answers.find("200 OK", at + 1))
+    ++count;
+  EXPECT_EQ(count, 6U) << answers;
 }
 
 TEST_F(ProtocolHttpTest, StopDoesNotWaitForIdleConnections) {
@@ -144,7 +315,7 @@ TEST_F(ProtocolHttpTest, StopWaitsForHalfARequestOnlyShortly) {
 class CorsHttpTest : public HttpTest {
  protected:
   void configure(ServiceSettings& settings) override {
-    settings.http.cors_origin = "https://viewer.example";
+    settings.http.cors_origins = {"https://viewer.example"};
   }
 };
 
@@ -155,6 +326,58 @@ TEST_F(CorsHttpTest, TheConfiguredOriginMayCall) {
   EXPECT_EQ(answer->get_header_value("Access-Control-Allow-Origin"), "https://viewer.example");
   EXPECT_NE(answer->get_header_value("Access-Control-Allow-Methods").find("POST"),
             std::string::npos);
+  const httplib::Headers from{{"Origin", "https://viewer.example"},
+                              {"Sec-Fetch-Site", "cross-site"}};
+  EXPECT_EQ(client().Post("/v1/jobs", from, job_body(), "application/json")->status, 202);
+  const httplib::Headers other{{"Origin", "https://evil.example"},
+                               {"Sec-Fetch-Site", "cross-site"}};
+  EXPECT_EQ(
+      problem_of(client().Post("/v1/jobs", other, job_body(), "application/json"), 403)["code"],
+      "cross_site");
+}
+
+TEST_F(ProtocolHttpTest, APageOfAnotherSiteChangesNothing) {
+  const std::string own = "127.0.0.1:" + std::to_string(port());
+  for (const httplib::Headers& headers : {
+           httplib::Headers{{"Origin", "http://evil.example"}},
+           httplib::Headers{{"Origin", "null"}},
+           httplib::Headers{{"Origin", "http://127.0.0.1:1"}},
+           httplib::Headers{{"Sec-Fetch-Site", "cross-site"}},
+           httplib::Headers{{"Sec-Fetch-Site", "same-site"}},
+       }) {
+    const auto answer = client().Post("/v1/jobs", headers, square_json(), "text/plain");
+    EXPECT_EQ(problem_of(answer, 403)["code"], "cross_site");
+    EXPECT_EQ(problem_of(client().Delete("/v1/jobs/x", headers), 403)["code"], "cross_site");
+    // What only looks is the browser's to hide from the page.
+    EXPECT_EQ(client().Get("/v1/jobs", headers)->status, 200);
+  }
+  for (const httplib::Headers& headers : {
+           httplib::Headers{{"Origin", "http://" + own}, {"Sec-Fetch-Site", "same-origin"}},
+           httplib::Headers{{"Sec-Fetch-Site", "none"}},
+           httplib::Headers{},
+       }) {
+    const auto answer = client().Post("/v1/inspect", headers, square_json(), "text/plain");
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 200) << answer->body;
+  }
+}
+
+TEST_F(ProtocolHttpTest, NamesThatAreNotTheServersAreRefused) {
+  const auto get = [&](const std::string& host, const std::string& path) {
+    return exchange("GET " + path + " HTTP/1.1\r\nConnection: close\r\nHost: " + host + "\r\n\r\n");
+  };
+  for (const char* host : {"evil.example", "evil.example:80", "127.0.0.1.evil.example", "192.0.2.1",
+                           "[2001:db8::1]", "localhost.evil.example", ""}) {
+    const std::string answer = get(host, "/v1/jobs");
+    const bool named = *host != '\0';
+    EXPECT_EQ(answer.starts_with("HTTP/1.1 403 "), named) << host << "\n" << answer;
+    EXPECT_EQ(answer.find("host_not_allowed") != std::string::npos, named) << host;
+    EXPECT_TRUE(get(host, "/healthz").starts_with("HTTP/1.1 200 ")) << host;
+  }
+  for (const char* host :
+       {"localhost", "LOCALHOST:1234", "127.0.0.1:9", "[::1]:80", "a.localhost", "x"}) {
+    EXPECT_TRUE(get(host, "/v1/jobs").starts_with("HTTP/1.1 200 ")) << host;
+  }
 }
 
 }  // namespace

@@ -36,6 +36,10 @@ bool RawConnection::send(std::string_view bytes) {
   return true;
 }
 
+void RawConnection::close_sending() {
+  ::shutdown(socket_, SHUT_WR);
+}
+
 std::string RawConnection::receive_until(std::string_view end) {
   std::string received;
   std::array<char, 4096> buffer{};

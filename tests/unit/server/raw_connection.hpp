@@ -17,6 +17,8 @@ class RawConnection {
 
   // False: the server has closed.
   bool send(std::string_view bytes);
+  // As a client does that has nothing more to say.
+  void close_sending();
   // What comes until `end` has come, the server closes, or nothing comes for the patience.
   [[nodiscard]] std::string receive_until(std::string_view end);
   [[nodiscard]] std::string receive_all() { return receive_until(""); }

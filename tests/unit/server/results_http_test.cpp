@@ -122,9 +122,46 @@ TEST_F(ResultsHttpTest, OldClientsGetTheBodyWithoutChunks) {
   EXPECT_TRUE(answer.ends_with("\r\n\r\n{\"cell\": {\"elements\": 12}}\n")) << answer;
 }
 
-TEST_F(ResultsHttpTest, ADamagedArchiveIsAnErrorAndNoBrokenDownload) {
-  symcell::test::write_file(service_->jobs().files().cell(path_.substr(9)), "damaged");
-  EXPECT_EQ(problem_of(client().Get(path_ + "/cell"), 500)["code"], "internal");
+// Cut off, with a bit turned, emptied, gone: nothing of it is sent.
+TEST_F(ResultsHttpTest, DamagedFilesAreErrorsAndNoBrokenDownloads) {
+  const std::string id = path_.substr(9);
+  const JobFiles& files = service_->jobs().files();
+  for (const auto& [name, file] :
+       {std::pair<std::string, std::filesystem::path>{"/cell", files.cell(id)},
+        {"/full", files.cell(id)},
+        {"/statistics", files.statistics(id)},
+        {"/model", files.model(id)}}) {
+    const std::string whole = symcell::test::read_file(file);
+    std::string turned = whole;
+    turned[turned.size() / 2] = static_cast<char>(turned[turned.size() / 2] ^ 1);
+    for (const std::string& damage :
+         {whole.substr(0, whole.size() / 2), turned, std::string(), whole + " "}) {
+      symcell::test::write_file(file, damage);
+      EXPECT_EQ(problem_of(client().Get(path_ + name), 500)["code"], "stored_file_damaged")
+          << name << damage.size();
+    }
+    std::filesystem::remove(file);
+    EXPECT_EQ(problem_of(client().Get(path_ + name), 500)["code"], "stored_file_damaged") << name;
+    if (name == "/statistics") {
+      const auto document = job(id);
+      EXPECT_TRUE(document["statistics"].is_null());
+      EXPECT_EQ(document["damaged"][0], "statistics");
+    }
+    symcell::test::write_file(file, whole);
+    EXPECT_EQ(client().Get(path_ + name)->status, 200) << name;
+  }
+  EXPECT_FALSE(job(id).contains("damaged"));
+}
+
+TEST_F(ResultsHttpTest, AModelThatWasDamagedWhileItWaitedIsNotMeshed) {
+  engine_.close_gate();
+  const std::string first = submit()["id"];
+  ASSERT_TRUE(reaches(first, "running"));
+  const std::string second = submit()["id"];
+  symcell::test::write_file(service_->jobs().files().model(second), square_json() + " ");
+  engine_.open_gate();
+  ASSERT_TRUE(reaches(second, "failed"));
+  EXPECT_NE(std::string(job(second)["error"]["detail"]).find("submit it again"), std::string::npos);
 }
 
 TEST_F(ResultsHttpTest, UnfinishedAndFailedJobsHaveNoResults) {

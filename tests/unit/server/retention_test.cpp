@@ -12,21 +12,28 @@ constexpr std::int64_t kHourMs = 3'600'000;
 
 class RetentionTest : public ::testing::Test {
  protected:
+  [[nodiscard]] MachineClocks clocks() {
+    return {[this] { return wall_; }, [this] { return steady_; }};
+  }
   void add_finished(const std::string& id, std::int64_t finished_ms) {
     Job job;
     job.id = id;
     job.model_bytes = 10;
     store_.insert(job, std::nullopt);
+    steady_ = finished_ms;
     store_.apply(id, JobEvent::kStart, {.time_ms = finished_ms});
     store_.apply(id, JobEvent::kSucceed, {.time_ms = finished_ms, .result_bytes = 90});
   }
   std::size_t apply(const RetentionRules& rules) {
-    return apply_retention(rules, store_, files_, 100 * kHourMs);
+    steady_ = 100 * kHourMs;
+    return apply_retention(rules, store_, files_);
   }
 
   symcell::test::TemporaryFolder folder_;
   JobFiles files_{folder_.path()};
-  SqliteJobStore store_{files_.database()};
+  std::int64_t wall_ = 0;
+  std::int64_t steady_ = 0;
+  SqliteJobStore store_{files_.database(), {}, clocks()};
 };
 
 TEST_F(RetentionTest, NoRulesKeepEverything) {
@@ -55,6 +62,46 @@ TEST_F(RetentionTest, TheOldestGoWhenTheyTakeTooMuchRoom) {
   add_finished("b", 2 * kHourMs);
   EXPECT_EQ(apply({.max_bytes = 150}), 1U);
   EXPECT_FALSE(store_.find("a"));
+}
+
+TEST_F(RetentionTest, AClockThatIsSetRemovesNothing) {
+  add_finished("a", 1 * kHourMs);
+  wall_ += 30 * 24 * kHourMs;
+  EXPECT_EQ(apply({.max_age_s = 7 * 24 * 3600}), 0U);
+  // Also when the server starts with the clock set.
+  wall_ += 300 * 24 * kHourMs;
+  SqliteJobStore again(files_.database(), {}, clocks());
+  EXPECT_EQ(apply_retention({.max_age_s = 7 * 24 * 3600}, again, files_), 0U);
+  wall_ -= 700 * 24 * kHourMs;
+  SqliteJobStore third(files_.database(), {}, clocks());
+  EXPECT_EQ(apply_retention({.max_age_s = 7 * 24 * 3600}, third, files_), 0U);
+  // And time that really passes counts, with the server up and down.
+  for (int day = 0; day < 6; ++day) {
+    SqliteJobStore next(files_.database(), {}, clocks());
+    steady_ += 12 * kHourMs;
+    next.tidy(0);
+    wall_ += 24 * kHourMs;  // down for as long again
+  }
+  SqliteJobStore last(files_.database(), {}, clocks());
+  EXPECT_EQ(apply_retention({.max_age_s = 7 * 24 * 3600}, last, files_), 1U);
+}
+
+TEST_F(RetentionTest, OneSweepRemovesAShareOfWhatIsTooOld) {
+  for (int i = 0; i < 130; ++i) add_finished("job" + std::to_string(i), i);
+  EXPECT_EQ(apply({.max_age_s = 1}), 100U);
+  EXPECT_EQ(apply({.max_age_s = 1}), 30U);
+  // Room and number are no matter of clocks.
+  for (int i = 0; i < 110; ++i) add_finished("job" + std::to_string(i), i);
+  EXPECT_EQ(apply({.max_jobs = 1}), 109U);
+}
+
+TEST_F(RetentionTest, NoJobEndsBeforeItStarts) {
+  Job job;
+  job.id = "a";
+  job.created_ms = 5000;
+  store_.insert(job, std::nullopt);
+  EXPECT_EQ(store_.apply("a", JobEvent::kStart, {.time_ms = 1000})->started_ms, 5000);
+  EXPECT_EQ(store_.apply("a", JobEvent::kSucceed, {.time_ms = 2000})->finished_ms, 5000);
 }
 
 TEST_F(RetentionTest, UnfinishedJobsStay) {

@@ -15,6 +15,7 @@ namespace symcell::server::test {
 inline void declare_job_metrics(Metrics& metrics) {
   metrics.declare_histogram("symcell_job_duration_seconds", "", {1});
   metrics.declare_counter("symcell_job_errors_total", "");
+  metrics.declare_counter("symcell_job_write_retries_total", "");
   metrics.declare_counter("symcell_internal_errors_total", "");
 }
 

@@ -59,16 +59,16 @@ TEST_F(SqliteJobStoreTest, ForbiddenEventsChangeNothing) {
   EXPECT_EQ(store_.find("a")->state, JobState::kQueued);
 }
 
-TEST_F(SqliteJobStoreTest, CrashesAreCountedAcrossRequeues) {
+TEST_F(SqliteJobStoreTest, LostWorkersAreCountedAcrossRequeues) {
   store_.insert(new_job("a"), std::nullopt);
   for (int i = 1; i <= 2; ++i) {
     store_.apply("a", JobEvent::kStart, {.time_ms = 1});
-    EXPECT_EQ(store_.apply("a", JobEvent::kRequeue, {.time_ms = 1, .crashed = true})->crashes, i);
+    store_.count_lost_worker("a");
+    const auto requeued = store_.apply("a", JobEvent::kRequeue, {.time_ms = 1});
+    EXPECT_EQ(requeued->lost_workers, i);
+    EXPECT_FALSE(requeued->started_ms);
   }
-  store_.apply("a", JobEvent::kStart, {.time_ms = 1});
-  const auto orderly = store_.apply("a", JobEvent::kRequeue, {.time_ms = 1});
-  EXPECT_EQ(orderly->crashes, 2);
-  EXPECT_FALSE(orderly->started_ms);
+  EXPECT_EQ(store_.find("a")->lost_workers, 2);
 }
 
 TEST_F(SqliteJobStoreTest, TheSameKeyGivesTheSameJobOrAConflict) {
@@ -123,6 +123,55 @@ TEST_F(SqliteJobStoreTest, TotalsCountStatesAndBytes) {
   EXPECT_EQ(totals.by_state[static_cast<std::size_t>(JobState::kQueued)], 1);
   EXPECT_EQ(totals.by_state[static_cast<std::size_t>(JobState::kSucceeded)], 1);
   EXPECT_EQ(totals.bytes, 25);
+}
+
+TEST_F(SqliteJobStoreTest, TotalsFollowEveryChangeAndAreThoseOfAnotherOpening) {
+  const auto expect = [&](std::int64_t queued, std::int64_t failed, std::int64_t bytes) {
+    SqliteJobStore again(folder_ / "jobs.sqlite");
+    for (SqliteJobStore* store : {&store_, &again}) {
+      const StoreTotals totals = store->totals();
+      EXPECT_EQ(totals.by_state[static_cast<std::size_t>(JobState::kQueued)], queued);
+      EXPECT_EQ(totals.by_state[static_cast<std::size_t>(JobState::kFailed)], failed);
+      EXPECT_EQ(totals.bytes, bytes);
+    }
+  };
+  const IdempotencyKey key{"k", "d"};
+  store_.insert(new_job("a"), key);
+  store_.insert(new_job("b"), std::nullopt);
+  store_.insert(new_job("c"), key);  // a repetition: not stored
+  expect(2, 0, 20);
+  store_.apply("a", JobEvent::kStart, {.time_ms = 1});
+  store_.apply("a", JobEvent::kRequeue, {.time_ms = 1});
+  store_.apply("b", JobEvent::kFail, {.time_ms = 1, .result_bytes = 7});
+  store_.apply("b", JobEvent::kFail, {.time_ms = 1, .result_bytes = 7});  // forbidden
+  expect(1, 1, 27);
+  store_.erase("b");
+  store_.erase("b");
+  expect(1, 0, 10);
+}
+
+// What every submission costs must not grow with what is stored: no statement of a job's life scans
+// the table.
+TEST_F(SqliteJobStoreTest, NothingScansTheTable) {
+  SQLite::Database database((folder_ / "jobs.sqlite").string(), SQLite::OPEN_READONLY);
+  for (const char* statement :
+       {"SELECT * FROM jobs WHERE id = 'a'", "DELETE FROM jobs WHERE id = 'a'",
+        "UPDATE jobs SET state = 'x' WHERE id = 'a'",
+        "SELECT * FROM jobs WHERE finished_clock_ms IS NOT NULL ORDER BY finished_clock_ms, "
+        "sequence LIMIT 9",
+        "SELECT * FROM jobs WHERE sequence < 9 AND state = 'x' ORDER BY sequence DESC LIMIT 9",
+        "SELECT * FROM jobs WHERE sequence < 9 ORDER BY sequence DESC LIMIT 9",
+        "SELECT 1 FROM erased WHERE id = 'a'",
+        "SELECT digest, job_id FROM idempotency_keys WHERE key = 'a'"}) {
+    SQLite::Statement plan(database, std::string("EXPLAIN QUERY PLAN ") + statement);
+    while (plan.executeStep()) {
+      const std::string step = plan.getColumn(3).getString();
+      const bool scans =
+          step.find("SCAN") != std::string::npos && step.find("INDEX") == std::string::npos;
+      EXPECT_FALSE(scans) << statement << ": " << step;
+      EXPECT_EQ(step.find("TEMP B-TREE"), std::string::npos) << statement << ": " << step;
+    }
+  }
 }
 
 TEST_F(SqliteJobStoreTest, AnotherOpeningFindsTheJobs) {

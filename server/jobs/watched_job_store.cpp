@@ -1,0 +1,123 @@
+#include "server/jobs/watched_job_store.hpp"
+
+#include <exception>
+#include <type_traits>
+#include <utility>
+
+namespace symcell::server {
+namespace {
+
+// A store that fails does so for everybody who asks; one line tells as much as a hundred.
+constexpr std::chrono::seconds kTellInterval{10};
+// A probe costs a commit, and a write that succeeded as lately as this is as good.
+constexpr std::chrono::seconds kHealthyFor{5};
+
+}  // namespace
+
+WatchedJobStore::WatchedJobStore(std::unique_ptr<JobStore> store, Metrics& metrics, Logger& logger)
+    : store_(std::move(store)), metrics_(metrics), logger_(logger) {
+  metrics_.declare_counter("symcell_store_errors_total",
+                           "Calls to the job store that failed, by operation.");
+}
+
+void WatchedJobStore::failed(std::string_view operation, const std::exception& exception) {
+  metrics_.count("symcell_store_errors_total", {{"operation", operation}});
+  const std::lock_guard lock(mutex_);
+  ++failures_;
+  const bool first = !std::exchange(failing_, true);
+  if (!first && Clock::now() - told_ < kTellInterval) return;
+  told_ = Clock::now();
+  logger_.error("store_failed", {{"operation", operation},
+                                 {"what", exception.what()},
+                                 {"failures", static_cast<std::int64_t>(failures_)}});
+}
+
+void WatchedJobStore::wrote() {
+  const std::lock_guard lock(mutex_);
+  last_write_ = Clock::now();
+  if (!std::exchange(failing_, false)) return;
+  logger_.info("store_works_again",
+               {{"failures", static_cast<std::int64_t>(std::exchange(failures_, 0))}});
+}
+
+template <class Work>
+auto WatchedJobStore::watched(std::string_view operation, bool writes, const Work& work) {
+  try {
+    if constexpr (std::is_void_v<decltype(work())>) {
+      work();
+      if (writes) wrote();
+    } else {
+      auto result = work();
+      // What only reads says nothing of a disk that is full.
+      if (writes) wrote();
+      return result;
+    }
+  } catch (const std::exception& exception) {
+    failed(operation, exception);
+    throw;
+  }
+}
+
+InsertOutcome WatchedJobStore::insert(const Job& job, const std::optional<IdempotencyKey>& key) {
+  return watched("insert", true, [&] { return store_->insert(job, key); });
+}
+
+std::optional<InsertOutcome> WatchedJobStore::find_key(const IdempotencyKey& key) {
+  return watched("find_key", false, [&] { return store_->find_key(key); });
+}
+
+std::optional<Job> WatchedJobStore::find(std::string_view id) {
+  return watched("find", false, [&] { return store_->find(id); });
+}
+
+std::vector<Job> WatchedJobStore::list(const JobFilter& filter) {
+  return watched("list", false, [&] { return store_->list(filter); });
+}
+
+std::vector<Job> WatchedJobStore::unfinished() {
+  return watched("unfinished", false, [&] { return store_->unfinished(); });
+}
+
+std::vector<Job> WatchedJobStore::oldest_finished(std::size_t limit) {
+  return watched("oldest_finished", false, [&] { return store_->oldest_finished(limit); });
+}
+
+std::optional<Job> WatchedJobStore::apply(std::string_view id,
+                                          JobEvent event,
+                                          const JobChange& change) {
+  return watched("apply", true, [&] { return store_->apply(id, event, change); });
+}
+
+void WatchedJobStore::count_lost_worker(std::string_view id) {
+  watched("count_lost_worker", true, [&] { store_->count_lost_worker(id); });
+}
+
+bool WatchedJobStore::erase(std::string_view id) {
+  return watched("erase", true, [&] { return store_->erase(id); });
+}
+
+bool WatchedJobStore::was_erased(std::string_view id) {
+  return watched("was_erased", false, [&] { return store_->was_erased(id); });
+}
+
+std::int64_t WatchedJobStore::tidy(std::int64_t mark) {
+  return watched("tidy", true, [&] { return store_->tidy(mark); });
+}
+
+std::int64_t WatchedJobStore::clock_ms() {
+  return store_->clock_ms();
+}
+
+StoreTotals WatchedJobStore::totals() {
+  return store_->totals();
+}
+
+void WatchedJobStore::check_health() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!failing_ && Clock::now() - last_write_ < kHealthyFor) return;
+  }
+  watched("probe", true, [&] { store_->check_health(); });
+}
+
+}  // namespace symcell::server

@@ -1,0 +1,54 @@
+// A store that is watched: its failures are counted, told in the log, and remembered until it works
+// again.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+
+#include "server/base/log.hpp"
+#include "server/base/metrics.hpp"
+#include "server/jobs/job_store.hpp"
+
+namespace symcell::server {
+
+class WatchedJobStore final : public JobStore {
+ public:
+  // Counts symcell_store_errors_total; declares it. Both must outlive the store.
+  WatchedJobStore(std::unique_ptr<JobStore> store, Metrics& metrics, Logger& logger);
+
+  InsertOutcome insert(const Job& job, const std::optional<IdempotencyKey>& key) override;
+  [[nodiscard]] std::optional<InsertOutcome> find_key(const IdempotencyKey& key) override;
+  [[nodiscard]] std::optional<Job> find(std::string_view id) override;
+  [[nodiscard]] std::vector<Job> list(const JobFilter& filter) override;
+  [[nodiscard]] std::vector<Job> unfinished() override;
+  [[nodiscard]] std::vector<Job> oldest_finished(std::size_t limit) override;
+  std::optional<Job> apply(std::string_view id, JobEvent event, const JobChange& change) override;
+  void count_lost_worker(std::string_view id) override;
+  bool erase(std::string_view id) override;
+  [[nodiscard]] bool was_erased(std::string_view id) override;
+  std::int64_t tidy(std::int64_t mark) override;
+  [[nodiscard]] std::int64_t clock_ms() override;
+  [[nodiscard]] StoreTotals totals() override;
+  // Asks the store at most every few seconds while it works, and every time while it fails.
+  void check_health() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  template <class Work>
+  auto watched(std::string_view operation, bool writes, const Work& work);
+  void failed(std::string_view operation, const std::exception& exception);
+  void wrote();
+
+  std::unique_ptr<JobStore> store_;
+  Metrics& metrics_;
+  Logger& logger_;
+  std::mutex mutex_;  // guards all below
+  bool failing_ = false;
+  std::uint64_t failures_ = 0;  // since it began to fail
+  Clock::time_point told_{};
+  Clock::time_point last_write_{};
+};
+
+}  // namespace symcell::server
