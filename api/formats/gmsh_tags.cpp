@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
 
 namespace symcell::internal {
 
@@ -33,6 +34,44 @@ GmshTags gmsh_tags(const MeshGroups& groups, bool bounds) {
     }
   }
   return tags;
+}
+
+namespace {
+
+// Names are in quotes and hold none.
+void write_name(std::int32_t dimension, std::int32_t tag, std::string name, ByteWriter& out) {
+  std::ranges::replace(name, '"', '\'');
+  out.integer(dimension);
+  out.character(' ');
+  out.integer(tag);
+  out.text(" \"");
+  out.text(name);
+  out.text("\"\n");
+}
+
+}  // namespace
+
+void write_physical_names(const SymmetryCellMesh& cell,
+                          const MeshGroups& groups,
+                          const GmshTags& tags,
+                          ByteWriter& out) {
+  const std::int32_t d = cell.dimension;
+  const bool bounds = tags.lower != 0;
+  out.text("$PhysicalNames\n");
+  out.integer(
+      static_cast<std::int64_t>(tags.regions.size() + tags.markers.size() + (bounds ? 2 : 0)));
+  out.character('\n');
+  if (bounds) {
+    write_name(d - 1, tags.lower, "lower_bound", out);
+    write_name(d - 1, tags.higher, "higher_bound", out);
+  }
+  for (std::size_t g = 0; g < tags.markers.size(); ++g) {
+    write_name(d - 1, tags.markers[g], marker_name(cell, groups.markers()[g]), out);
+  }
+  for (std::size_t g = 0; g < tags.regions.size(); ++g) {
+    write_name(d, tags.regions[g], region_name(groups.regions()[g]), out);
+  }
+  out.text("$EndPhysicalNames\n");
 }
 
 }  // namespace symcell::internal

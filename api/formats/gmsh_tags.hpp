@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "api/formats/byte_writer.hpp"
 #include "api/formats/mesh_groups.hpp"
 
 namespace symcell::internal {
@@ -36,5 +37,11 @@ struct GmshTags {
 };
 
 [[nodiscard]] GmshTags gmsh_tags(const MeshGroups& groups, bool bounds);
+
+// The section $PhysicalNames: the bounds, if they have tags, markers and regions.
+void write_physical_names(const SymmetryCellMesh& cell,
+                          const MeshGroups& groups,
+                          const GmshTags& tags,
+                          ByteWriter& out);
 
 }  // namespace symcell::internal

@@ -1,7 +1,6 @@
 // Gmsh 4.1: every group is a discrete entity and a physical group of one tag. Node tags are the ids
 // of the other formats plus 1, element tags run on over the groups.
 #include <algorithm>
-#include <string>
 
 #include "api/formats/gmsh_tags.hpp"
 #include "api/formats/mesh_formats.hpp"
@@ -26,7 +25,7 @@ class MshWriter {
 
   void write() {
     out_.text("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
-    write_names();
+    write_physical_names(cell_, groups_, tags_, out_);
     write_entities();
     write_nodes();
     write_elements();
@@ -48,33 +47,6 @@ class MshWriter {
     };
     (put(values), ...);
     out_.character('\n');
-  }
-
-  // Names are in quotes and hold none.
-  void write_name(std::int32_t dimension, std::int32_t tag, std::string name) {
-    std::ranges::replace(name, '"', '\'');
-    out_.integer(dimension);
-    out_.character(' ');
-    out_.integer(tag);
-    out_.text(" \"");
-    out_.text(name);
-    out_.text("\"\n");
-  }
-
-  void write_names() {
-    out_.text("$PhysicalNames\n");
-    line(tags_.regions.size() + tags_.markers.size() + (bounds_ ? 2u : 0u));
-    if (bounds_) {
-      write_name(dimension_ - 1, tags_.lower, "lower_bound");
-      write_name(dimension_ - 1, tags_.higher, "higher_bound");
-    }
-    for (std::size_t g = 0; g < tags_.markers.size(); ++g) {
-      write_name(dimension_ - 1, tags_.markers[g], marker_name(cell_, groups_.markers()[g]));
-    }
-    for (std::size_t g = 0; g < tags_.regions.size(); ++g) {
-      write_name(dimension_, tags_.regions[g], region_name(groups_.regions()[g]));
-    }
-    out_.text("$EndPhysicalNames\n");
   }
 
   // One discrete entity: tag, bounding box, its physical group (of the same tag), no boundary.

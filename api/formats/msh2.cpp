@@ -1,9 +1,6 @@
 // Gmsh 2.2 ASCII, for programs that read no 4.1 (Netgen, MFEM, ElmerGrid). Elements carry the tag of
 // their group. There is no $Periodic: MFEM takes its pairs for one node each and would glue the cell
 // to a ring without turning it.
-#include <algorithm>
-#include <string>
-
 #include "api/formats/gmsh_tags.hpp"
 #include "api/formats/mesh_formats.hpp"
 #include "api/formats/mesh_groups.hpp"
@@ -21,7 +18,7 @@ class Msh2Writer {
 
   void write() {
     out_.text("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
-    write_names();
+    write_physical_names(cell_, groups_, tags_, out_);
     write_nodes();
     write_elements();
   }
@@ -30,35 +27,6 @@ class Msh2Writer {
   void count(std::int64_t n) {
     out_.integer(n);
     out_.character('\n');
-  }
-
-  // Names are in quotes and hold none.
-  void write_name(std::int32_t dimension, std::int32_t tag, std::string name) {
-    std::ranges::replace(name, '"', '\'');
-    out_.integer(dimension);
-    out_.character(' ');
-    out_.integer(tag);
-    out_.text(" \"");
-    out_.text(name);
-    out_.text("\"\n");
-  }
-
-  void write_names() {
-    const std::int32_t d = cell_.dimension;
-    out_.text("$PhysicalNames\n");
-    count(
-        static_cast<std::int64_t>(tags_.regions.size() + tags_.markers.size() + (bounds_ ? 2 : 0)));
-    if (bounds_) {
-      write_name(d - 1, tags_.lower, "lower_bound");
-      write_name(d - 1, tags_.higher, "higher_bound");
-    }
-    for (std::size_t g = 0; g < tags_.markers.size(); ++g) {
-      write_name(d - 1, tags_.markers[g], marker_name(cell_, groups_.markers()[g]));
-    }
-    for (std::size_t g = 0; g < tags_.regions.size(); ++g) {
-      write_name(d, tags_.regions[g], region_name(groups_.regions()[g]));
-    }
-    out_.text("$EndPhysicalNames\n");
   }
 
   void write_nodes() {

@@ -7,14 +7,10 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/base/sanitized.hpp"
+
 namespace symcell::server {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;  // an allocator of its own
-#else
-constexpr bool kSanitized = false;
-#endif
 
 constexpr std::size_t kHugePageBytes = std::size_t{2}
                                        << 20;  // of x86-64 and of arm64 with 4 kB pages

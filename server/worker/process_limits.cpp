@@ -11,14 +11,10 @@
 #include <new>
 #include <string>
 
+#include "core/base/sanitized.hpp"
+
 namespace symcell::server {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 
 pid_t worker_pid = 0;
 

@@ -10,14 +10,10 @@
 #include <csignal>
 #include <memory>
 
+#include "core/base/sanitized.hpp"
+
 namespace symcell::server {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 
 // Standard streams, the connection, an event, a model, two results, pipes to a child of TetGen's.
 constexpr rlim_t kMostFiles = 64;

@@ -14,6 +14,8 @@
 #include <new>
 #include <string>
 
+#include "core/base/sanitized.hpp"
+
 namespace symcell::solid {
 namespace {
 
@@ -24,20 +26,6 @@ constexpr int kExitRefused = 88;
 // The parent looks at child and context with pauses that grow between these.
 constexpr long kFirstPauseNs = 200'000;
 constexpr long kLongestPauseNs = 10'000'000;
-
-// Sanitizers reserve terabytes of address space for their shadow: then it is not limited.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || \
-    __has_feature(memory_sanitizer)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-#else
-constexpr bool kSanitized = false;
-#endif
 
 // An anonymous file in memory that parent and child share.
 class SharedFile {

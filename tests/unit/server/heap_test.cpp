@@ -14,18 +14,13 @@
 #include <functional>
 #include <string>
 
+#include "core/base/sanitized.hpp"
 #include "server/worker/process_limits.hpp"
 
 namespace symcell::server::test {
 namespace {
 
 constexpr std::size_t kMiB = std::size_t{1} << 20;
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 
 // The exit status of a child that ends with what `work` returns; -1: it ended otherwise.
 int status_of(const std::function<int()>& work) {
