@@ -30,9 +30,11 @@ std::uint64_t machine_bytes() {
 
 void prepare_heap() {
   if (kSanitized) return;
+  // NOLINTBEGIN(concurrency-mt-unsafe): there is one thread yet.
   ::mallopt(M_ARENA_MAX, 1);
   ::mallopt(M_MMAP_MAX, 0);
   ::mallopt(M_TRIM_THRESHOLD, -1);  // never by itself (mallopt(3))
+  // NOLINTEND(concurrency-mt-unsafe)
 }
 
 void reserve_heap(std::uint64_t limit_bytes) {
@@ -42,11 +44,11 @@ void reserve_heap(std::uint64_t limit_bytes) {
   if (bytes < 2 * kHugePageBytes) return;
   void* block = std::malloc(bytes);
   if (block == nullptr) return;
-  const auto begin = reinterpret_cast<std::uintptr_t>(block);
-  const std::uintptr_t first = (begin + kHugePageBytes - 1) / kHugePageBytes * kHugePageBytes;
-  const std::uintptr_t last = (begin + bytes) / kHugePageBytes * kHugePageBytes;
+  const std::size_t before = reinterpret_cast<std::uintptr_t>(block) % kHugePageBytes;
+  const std::size_t skipped = before == 0 ? 0 : kHugePageBytes - before;
+  const std::size_t whole = (bytes - skipped) / kHugePageBytes * kHugePageBytes;
   // Where the system has no huge pages this fails, and the heap is one of small pages.
-  ::madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+  ::madvise(static_cast<char*>(block) + skipped, whole, MADV_HUGEPAGE);
   std::free(block);
 }
 

@@ -79,14 +79,14 @@ void end_process_group() {
 
 void apply_limits(const WorkerLimits& limits) {
   if (kSanitized) return;
-  static const SoftLimit memory(RLIMIT_DATA);
-  static const SoftLimit processor(RLIMIT_CPU);
-  static const SoftLimit file(RLIMIT_FSIZE);
-  file.set(limits.file_bytes == 0 ? RLIM_INFINITY : limits.file_bytes);
-  memory.set(limits.memory_bytes == 0 ? RLIM_INFINITY : limits.memory_bytes);
+  static const SoftLimit kMemory(RLIMIT_DATA);
+  static const SoftLimit kProcessor(RLIMIT_CPU);
+  static const SoftLimit kFile(RLIMIT_FSIZE);
+  kFile.set(limits.file_bytes == 0 ? RLIM_INFINITY : limits.file_bytes);
+  kMemory.set(limits.memory_bytes == 0 ? RLIM_INFINITY : limits.memory_bytes);
   // The kernel counts from the start of the process, and not finer than seconds.
-  processor.set(limits.cpu_seconds == 0 ? RLIM_INFINITY
-                                        : cpu_seconds_used() + limits.cpu_seconds + 1);
+  kProcessor.set(limits.cpu_seconds == 0 ? RLIM_INFINITY
+                                         : cpu_seconds_used() + limits.cpu_seconds + 1);
 }
 
 void reset_peak_memory() {

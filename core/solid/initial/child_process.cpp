@@ -10,7 +10,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <string>
 
@@ -70,10 +72,11 @@ void limit(int resource, rlim_t most) {
 rlim_t address_space() {
   std::FILE* file = std::fopen("/proc/self/statm", "r");
   if (file == nullptr) return 0;
-  unsigned long pages = 0;
-  const int read = std::fscanf(file, "%lu", &pages);
+  std::array<char, 32> text{};  // the first number of the line is asked for
+  const bool read = std::fgets(text.data(), static_cast<int>(text.size()), file) != nullptr;
   std::fclose(file);
-  return read == 1 ? static_cast<rlim_t>(pages) * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) : 0;
+  const unsigned long pages = read ? std::strtoul(text.data(), nullptr, 10) : 0;
+  return static_cast<rlim_t>(pages) * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
 }
 
 // What the parent has not yet flushed is in this process's buffers too: it must go nowhere, even if
