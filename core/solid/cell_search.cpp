@@ -30,21 +30,17 @@ bool is_better(const RefinedSolid& a,
   return a.delaunay != b.delaunay ? a.delaunay : a.count() < b.count();
 }
 
-// More bad tetrahedra than another cut would mend.
-bool has_many_bad(const RefinedSolid& mesh, const StartLimits& limits) {
-  return static_cast<double>(mesh.guarded) >
-         std::max(limits.few_bad, limits.hopeless_share * static_cast<double>(mesh.count()));
-}
-
 bool should_try_another_start(const RefinedSolid& mesh,
                               int starts,
                               std::size_t effort,
                               const MeshOptions& options,
-                              const StartLimits& limits) {
+                              const Tuning& tuning) {
+  const StartLimits& limits = tuning.starts;
   if (options.plain || starts >= (mesh.guarded > 0 ? limits.meshes_if_bad : limits.meshes))
     return false;
   const auto count = static_cast<double>(mesh.count());
-  if (has_many_bad(mesh, limits)) return false;
+  // Another cut would not mend as many.
+  if (tuning.rounds.is_many_bad(mesh.guarded, mesh.count())) return false;
   const bool sized = count <= limits.sized_share * mesh.least_count;
   const bool poor = !options.delaunay &&
                     (sized ? mesh.least_sine < limits.sized_poor_sine : is_poor(mesh, limits));
@@ -116,7 +112,7 @@ bool CellSearch::wants_another_start() {
   const StartLimits& limits = tuning_.starts;
   if (out_of_time_ || meshed_ >= limits.meshes_if_bad || !starts_.has_next()) return false;
   if (!best_) return true;
-  return should_try_another_start(*best_, meshed_, starts_.effort(), options_, limits);
+  return should_try_another_start(*best_, meshed_, starts_.effort(), options_, tuning_);
 }
 
 // An error: no other start is to be tried.

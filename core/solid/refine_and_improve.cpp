@@ -175,8 +175,7 @@ Result<void> grow_while_it_helps(std::optional<Editor>& editor,
                                  Work& work) {
   std::size_t bad = count_bad(*editor, criteria);
   for (int growths = 0; growths < work.limits.most_growths; ++growths) {
-    const double share = static_cast<double>(bad) / static_cast<double>(mesh.tet_count());
-    if (bad <= work.limits.many_bad || share <= work.limits.many_bad_share) break;
+    if (!work.limits.is_many_bad(bad, mesh.tet_count())) break;
     const QuotientTetrahedralization before = mesh;
     const Work work_before = work;
     work.most_shaped = work.limits.more_growth * mesh.tet_count();

@@ -39,9 +39,6 @@ struct StartLimits {
   std::size_t mend_budget = 40'000;
   std::size_t start_budget = 4'000;
   double sized_share = 2.5;  // of the tetrahedra that a size bound asks for: less, and it decides
-  // More bad tetrahedra than this share come of the input, whatever the cut; a few may not.
-  double hopeless_share = 0.01;
-  double few_bad = 20;
   // A mesh with a dihedral angle of a sine below this counts as larger by a factor.
   double poor_sine = 0.26;          // 15 degrees
   double poor_exempt_sine = 0.087;  // 5 degrees: the input may have few more
@@ -86,6 +83,10 @@ struct RoundLimits {
   std::uint64_t more_growth = 2;
   double least_decline = 0.7;
   int most_growths = 4;
+  // More than that come of the input, whatever the cut; a few may not.
+  [[nodiscard]] bool is_many_bad(std::size_t bad, std::size_t count) const {
+    return bad > many_bad && static_cast<double>(bad) > many_bad_share * static_cast<double>(count);
+  }
   // For the sake of shape no edge gets shorter than this share of the shortest one of the first
   // mesh, whatever the runs: into spikes of the input they would shrink without end.
   double least_distance = 1.0 / 256;

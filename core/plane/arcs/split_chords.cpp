@@ -18,11 +18,6 @@ struct Split {
   [[nodiscard]] auto key() const { return std::tie(segment, vertex); }
 };
 
-Point2 place(const SymmetricPslg& pslg, const RotationTable& rotations, OrbitVertex v) {
-  const Point2 p = pslg.orbit_points[static_cast<std::size_t>(v.orbit)];
-  return v.orbit == pslg.centre_orbit ? p : rotations.rotate(p, v.exponent);
-}
-
 // Of the copy that lies on the segment.
 double share_of(Point2 x, Point2 a, Point2 b, const RotationTable& rotations) {
   const Point2 d = b - a;
@@ -64,8 +59,8 @@ void measure_shares(const SymmetricPslg& pslg,
                     std::vector<Split>& splits) {
   for (Split& split : splits) {
     const SymmetricSegment& segment = pslg.segments[static_cast<std::size_t>(split.segment)];
-    split.share = share_of(mesh.point(split.vertex), place(pslg, mesh.rotations(), segment.a),
-                           place(pslg, mesh.rotations(), segment.b), mesh.rotations());
+    split.share = share_of(mesh.point(split.vertex), place_of(pslg, mesh.rotations(), segment.a),
+                           place_of(pslg, mesh.rotations(), segment.b), mesh.rotations());
   }
   std::sort(splits.begin(), splits.end(), [](const Split& x, const Split& y) {
     return std::tie(x.segment, x.share, x.vertex) < std::tie(y.segment, y.share, y.vertex);
@@ -89,7 +84,7 @@ std::optional<SymmetricPslg> split_chords(const SymmetricPslg& pslg,
       const double from = shares.empty() ? 0 : shares.back();
       if (splits[i].share > from && splits[i].share < 1) shares.push_back(splits[i].share);
     }
-    split_segment(result, s, shares);
+    split_segment(result, mesh.rotations(), s, shares);
   }
   return result;
 }

@@ -48,13 +48,10 @@ Result<void> size_segments(const SymmetricPslg& symmetric,
                            std::vector<double>& of_segment) {
   of_segment.resize(symmetric.segments.size(), kInfinity);
   bool any = false;
-  const std::int32_t copies = symmetric.uniform_markers ? 1 : symmetric.fold;
   for (std::size_t s = 0; s < of_segment.size(); ++s) {
-    for (std::int32_t k = 0; k < copies; ++k) {
-      if (symmetric.segment_marker(s, k) != request.id) continue;
-      of_segment[s] = std::min(of_segment[s], request.size);
-      any = true;
-    }
+    if (!symmetric.has_marker(s, request.id)) continue;
+    of_segment[s] = std::min(of_segment[s], request.size);
+    any = true;
   }
   if (any) return {};
   return fail(ErrorCode::kBadOption,

@@ -4,31 +4,21 @@
 #include <vector>
 
 #include "core/geometry/arc.hpp"
-#include "core/geometry/rotation.hpp"
 
 namespace symcell::plane {
-namespace {
 
-Point2 place(const SymmetricPslg& pslg, const RotationTable& rotations, OrbitVertex v) {
+Point2 place_of(const SymmetricPslg& pslg, const RotationTable& rotations, OrbitVertex v) {
   const Point2 p = pslg.orbit_points[static_cast<std::size_t>(v.orbit)];
   return v.orbit == pslg.centre_orbit ? p : rotations.rotate(p, v.exponent);
 }
 
-bool has_marker(const SymmetricPslg& pslg, std::size_t segment, std::int64_t marker) {
-  const std::int32_t copies = pslg.uniform_markers ? 1 : pslg.fold;
-  for (std::int32_t k = 0; k < copies; ++k) {
-    if (pslg.segment_marker(segment, k) == marker) return true;
-  }
-  return false;
-}
-
-}  // namespace
-
-void split_segment(SymmetricPslg& pslg, std::size_t segment, std::span<const double> shares) {
-  const RotationTable rotations(pslg.fold);
+void split_segment(SymmetricPslg& pslg,
+                   const RotationTable& rotations,
+                   std::size_t segment,
+                   std::span<const double> shares) {
   const SymmetricSegment whole = pslg.segments[segment];
   const bool has_arcs = !pslg.bulges.empty();
-  const Point2 a = place(pslg, rotations, whole.a), b = place(pslg, rotations, whole.b);
+  const Point2 a = place_of(pslg, rotations, whole.a), b = place_of(pslg, rotations, whole.b);
   const double bulge = has_arcs ? pslg.bulges[segment] : 0;
   const double angle = angle_of_bulge(bulge);
   OrbitVertex last = whole.a;
@@ -59,6 +49,8 @@ void split_segment(SymmetricPslg& pslg, std::size_t segment, std::span<const dou
 }
 
 Result<void> divide_segments(SymmetricPslg& pslg, const std::vector<DivisionRequest>& divisions) {
+  if (divisions.empty()) return {};
+  const RotationTable rotations(pslg.fold);
   for (const DivisionRequest& request : divisions) {
     std::vector<double> shares;
     for (std::int32_t i = 1; i < request.parts; ++i) {
@@ -67,7 +59,7 @@ Result<void> divide_segments(SymmetricPslg& pslg, const std::vector<DivisionRequ
     bool any = false;
     const std::size_t segments = pslg.segments.size();
     for (std::size_t s = 0; s < segments; ++s) {
-      if (!has_marker(pslg, s, request.marker)) continue;
+      if (!pslg.has_marker(s, request.marker)) continue;
       any = true;
       if (pslg.segments[s].divided) continue;  // its marker differs between copies
       if (!pslg.bulges.empty() && pslg.bulges[s] != 0) {
@@ -77,7 +69,7 @@ Result<void> divide_segments(SymmetricPslg& pslg, const std::vector<DivisionRequ
                     {}, "/options/divisions");
       }
       pslg.segments[s].divided = true;
-      split_segment(pslg, s, shares);
+      split_segment(pslg, rotations, s, shares);
     }
     if (!any) {
       return fail(

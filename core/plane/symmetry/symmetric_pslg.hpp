@@ -62,6 +62,13 @@ struct SymmetricPslg {
     const auto first = static_cast<std::size_t>(segments[segment].first_marker);
     return segment_markers[uniform_markers ? first : first + static_cast<std::size_t>(copy)];
   }
+  // Whether any copy of the segment has the marker.
+  [[nodiscard]] bool has_marker(std::size_t segment, std::int64_t marker) const {
+    for (std::int32_t k = 0; k < (uniform_markers ? 1 : fold); ++k) {
+      if (segment_marker(segment, k) == marker) return true;
+    }
+    return false;
+  }
 };
 
 }  // namespace symcell::plane
