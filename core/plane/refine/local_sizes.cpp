@@ -134,7 +134,9 @@ GradedSize grade_sizes(const QuotientTriangulation& initial,
         const double wanted = sizes.of_segment[parent];
         // Between its ends a segment asks for its size, too.
         const double parts = std::min(h / wanted, kMostSourcesOnSegment);
-        for (double n = 1; n < parts; ++n) add_copies(a + (n / parts) * (b - a), false, wanted);
+        const auto inner = static_cast<std::int32_t>(std::ceil(parts)) - 1;
+        for (std::int32_t n = 1; n <= inner; ++n)
+          add_copies(a + (n / parts) * (b - a), false, wanted);
         h = std::min(h, wanted);
       }
       for (const std::uint32_t end : {i, k}) {
