@@ -72,7 +72,7 @@ struct LinkFace {
   double ab2 = 0, bc2 = 0, ca2 = 0;
 
   LinkFace() = default;
-  LinkFace(Point3 a_, Point3 b_, Point3 c_) : a(a_), b(b_), c(c_) {
+  LinkFace(Point3 first, Point3 second, Point3 third) : a(first), b(second), c(third) {
     const Point3 n = cross(b - a, c - a);
     normal2 = dot(n, n);
     ab2 = squared_distance(a, b);
