@@ -176,7 +176,9 @@ std::uint64_t number_of(const Nodes& n) {
   const auto u = [](std::int32_t i) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i));
   };
-  return mix(mix(u(n[0]) << 32 | u(n[1])) + u(n[2]) * 0xbf58476d1ce4e5b9ULL);
+  // Odd, without a short relation: the first bits of three irrational numbers.
+  return mix(u(n[0]) * 0x9e3779b97f4a7c15ULL + u(n[1]) * 0xbb67ae8584caa73bULL +
+             u(n[2]) * 0x3c6ef372fe94f82bULL);
 }
 
 std::string name_of(const Nodes& n) {

@@ -20,22 +20,28 @@ class Checker {
   explicit Checker(const QuotientTetrahedralization& mesh) : mesh_(mesh) {}
 
   Result<TetrahedraReport> run(ValidationLevel level, double expected_volume) {
-    if (auto ok = each_tet([&](TetId t) { return elements(t); }); !ok) return forward(ok);
-    if (level == ValidationLevel::kElements) return report_;
-    if (auto ok = each_tet([&](TetId t) { return incidence(t); }); !ok) return forward(ok);
-    if (auto ok = subsegments(); !ok) return forward(ok);
-    if (auto ok = vertices(); !ok) return forward(ok);
+    if (level == ValidationLevel::kElements) {
+      SYMCELL_TRY(each_tet([&](TetId t) { return elements(t); }));
+      return report_;
+    }
+    // In one go: most of the cost is to fetch the tetrahedra.
+    seen_.resize(mesh_.vertex_slots());
+    mesh_.edges().for_each([&](const EdgeKey& key, std::int32_t) {
+      ++seen_[static_cast<std::size_t>(key.a)].segment_ends;
+      ++seen_[static_cast<std::size_t>(key.b)].segment_ends;
+    });
+    SYMCELL_TRY(each_tet([&](TetId t) { return look_at(t); }));
+    SYMCELL_TRY(subsegments());
+    SYMCELL_TRY(vertices());
     if (level == ValidationLevel::kIncidence) return report_;
-    if (auto ok = angles(); !ok) return forward(ok);
-    if (auto ok = volume(expected_volume); !ok) return forward(ok);
+    SYMCELL_TRY(angles());
+    SYMCELL_TRY(volume(expected_volume));
     if (level == ValidationLevel::kEmbedding) return report_;
     delaunay();
     return report_;
   }
 
  private:
-  static Failure forward(const Result<void>& r) { return error_of(r); }
-
   static Result<void> broken(const char* layer, TetId t, std::size_t i, const char* what) {
     return fail(ErrorCode::kInternal,
                 std::string("mesh check '") + layer + "': tetrahedron " + std::to_string(t) +
@@ -49,7 +55,7 @@ class Checker {
   }
 
   template <class Check>
-  Result<void> each_tet(const Check& check) {
+  [[nodiscard]] Result<void> each_tet(const Check& check) const {
     for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
       if (!mesh_.alive(t)) continue;
       SYMCELL_TRY(check(t));
@@ -57,7 +63,16 @@ class Checker {
     return {};
   }
 
-  Result<void> elements(TetId t) {
+  Result<void> look_at(TetId t) {
+    SYMCELL_TRY(elements(t));
+    SYMCELL_TRY(incidence(t));
+    see_subsegments(t);
+    see_vertices(t);
+    report_.volume += volume_of(t);
+    return {};
+  }
+
+  [[nodiscard]] Result<void> elements(TetId t) const {
     const Tet& tet = mesh_.tet(t);
     for (std::uint32_t i = 0; i < 4; ++i) {
       const VertexId v = tet.v[i];
@@ -87,7 +102,7 @@ class Checker {
     return {};
   }
 
-  Result<void> incidence(TetId t) {
+  [[nodiscard]] Result<void> incidence(TetId t) const {
     const Tet& tet = mesh_.tet(t);
     for (std::uint32_t i = 0; i < 4; ++i) {
       const HalfFace g = tet.nb[i];
@@ -114,83 +129,69 @@ class Checker {
 
   // The three corners are the same, turning the other way seen from the other side.
   [[nodiscard]] bool faces_agree(TetId t, std::uint32_t i, HalfFace g) const {
-    const Tet& tet = mesh_.tet(t);
-    const std::int32_t off = tet.off[i];
+    const std::int32_t off = mesh_.tet(t).off[i];
+    const auto& mine = kFaceCorners[i];
+    const auto& theirs = kFaceCorners[face_of(g)];
+    const OrbitVertex first = mesh_.corner(t, mine[0]);
+    const auto seen = [&](std::uint32_t c) {
+      return mesh_.shift(mesh_.corner(tet_of(g), theirs[c % 3]), off);
+    };
     for (std::uint32_t turn = 0; turn < 3; ++turn) {
-      bool same = true;
-      for (std::uint32_t c = 0; c < 3; ++c) {
-        const OrbitVertex mine = mesh_.corner(t, kFaceCorners[i][c]);
-        const OrbitVertex theirs =
-            mesh_.shift(mesh_.corner(tet_of(g), kFaceCorners[face_of(g)][(turn + 3 - c) % 3]), off);
-        same = same && mine == theirs;
-      }
-      if (same) return true;
+      if (seen(turn) != first) continue;
+      return seen(turn + 2) == mesh_.corner(t, mine[1]) &&
+             seen(turn + 1) == mesh_.corner(t, mine[2]);
     }
     return false;
   }
 
-  Result<void> subsegments() {
-    EdgeMap found;
-    for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
-      if (!mesh_.alive(t)) continue;
-      for (const auto& e : kEdgeCorners) {
-        const OrbitVertex a = mesh_.corner(t, e[0]), b = mesh_.corner(t, e[1]);
-        const std::int32_t segment = mesh_.segment_of(a, b);
-        if (segment != kNoSegment) found.set(mesh_.edge_key(a, b), segment);
-      }
+  void see_subsegments(TetId t) {
+    for (const auto& e : kEdgeCorners) {
+      const OrbitVertex a = mesh_.corner(t, e[0]), b = mesh_.corner(t, e[1]);
+      const std::int32_t segment = mesh_.segment_of(a, b);
+      if (segment != kNoSegment) found_.set(mesh_.edge_key(a, b), segment);
     }
-    if (found.size() != mesh_.edges().size()) {
-      return fail(ErrorCode::kInternal,
-                  "mesh check 'incidence': " + std::to_string(mesh_.edges().size() - found.size()) +
-                      " of " + std::to_string(mesh_.edges().size()) +
-                      " subsegments are no edges of the mesh, or end at a vertex of no segment");
-    }
-    return {};
   }
 
-  Result<void> vertices() {
-    struct Seen {
-      std::uint32_t segment_ends = 0;
-      std::uint32_t facets = 0;
-      bool other_facet = false;  // a facet that is not the vertex's parent
-    };
-    std::vector<Seen> seen(mesh_.vertex_slots());
-    std::vector<std::uint8_t> used(mesh_.vertex_slots(), 0);
-    mesh_.edges().for_each([&](const EdgeKey& key, std::int32_t) {
-      ++seen[static_cast<std::size_t>(key.a)].segment_ends;
-      ++seen[static_cast<std::size_t>(key.b)].segment_ends;
-    });
-    for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
-      if (!mesh_.alive(t)) continue;
-      const Tet& tet = mesh_.tet(t);
-      for (std::uint32_t i = 0; i < 4; ++i) {
-        used[static_cast<std::size_t>(tet.v[i])] = 1;
-        if (tet.facet[i] == kNoFacet) continue;
-        for (const std::uint32_t c : kFaceCorners[i]) {
-          Seen& s = seen[static_cast<std::size_t>(tet.v[c])];
-          ++s.facets;
-          s.other_facet = s.other_facet || tet.facet[i] != mesh_.parent(tet.v[c]);
-        }
+  [[nodiscard]] Result<void> subsegments() const {
+    if (found_.size() == mesh_.edges().size()) return {};
+    return fail(ErrorCode::kInternal,
+                "mesh check 'incidence': " + std::to_string(mesh_.edges().size() - found_.size()) +
+                    " of " + std::to_string(mesh_.edges().size()) +
+                    " subsegments are no edges of the mesh, or end at a vertex of no segment");
+  }
+
+  void see_vertices(TetId t) {
+    const Tet& tet = mesh_.tet(t);
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      seen_[static_cast<std::size_t>(tet.v[i])].used = true;
+      if (tet.facet[i] == kNoFacet) continue;
+      for (const std::uint32_t c : kFaceCorners[i]) {
+        Seen& s = seen_[static_cast<std::size_t>(tet.v[c])];
+        ++s.facets;
+        s.other_facet = s.other_facet || tet.facet[i] != mesh_.parent(tet.v[c]);
       }
     }
-    for (std::size_t i = 0; i < seen.size(); ++i) {
+  }
+
+  [[nodiscard]] Result<void> vertices() const {
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
       const auto v = static_cast<VertexId>(i);
-      if (used[i] == 0) continue;
+      if (!seen_[i].used) continue;
       const TetId at = mesh_.tet_at(v);
       if (at >= mesh_.tet_slots() || !mesh_.alive(at) ||
           std::find(mesh_.tet(at).v, mesh_.tet(at).v + 4, v) == mesh_.tet(at).v + 4) {
         return broken_vertex(v, "its tetrahedron does not have it as a corner");
       }
       const VertexKind kind = mesh_.kind(v);
-      if (kind == VertexKind::kFree && (seen[i].facets != 0 || seen[i].segment_ends != 0)) {
+      if (kind == VertexKind::kFree && (seen_[i].facets != 0 || seen_[i].segment_ends != 0)) {
         return broken_vertex(v, "free, but on a facet or segment");
       }
-      if (kind == VertexKind::kFacet && (seen[i].facets == 0 || seen[i].other_facet)) {
+      if (kind == VertexKind::kFacet && (seen_[i].facets == 0 || seen_[i].other_facet)) {
         return broken_vertex(v, "on no face of its facet, or on one of another facet");
       }
       // A segment that the axis cuts in two equal halves has one end orbit there.
       if (kind == VertexKind::kSegment &&
-          seen[i].segment_ends < (mesh_.on_axis(v) && mesh_.fold() > 1 ? 1U : 2U)) {
+          seen_[i].segment_ends < (mesh_.on_axis(v) && mesh_.fold() > 1 ? 1U : 2U)) {
         return broken_vertex(v, "inside a segment, but not between two subsegments");
       }
     }
@@ -203,20 +204,17 @@ class Checker {
     return broken("embedding", wrong->tet, wrong->edge, "dihedral angles do not make one turn");
   }
 
-  Result<void> volume(double expected) {
-    double size = 0;
-    for (TetId t = 0; t < mesh_.tet_slots(); ++t) {
-      if (!mesh_.alive(t)) continue;
-      const Point3 d = mesh_.corner_point(t, 3);
-      const Point3 a = mesh_.corner_point(t, 0) - d, b = mesh_.corner_point(t, 1) - d;
-      size -= dot(cross(a, b), mesh_.corner_point(t, 2) - d) / 6;
-    }
-    report_.volume = size;
-    if (expected > 0 && std::abs(size - expected) > kVolumeSlack * expected) {
-      return fail(ErrorCode::kInternal, "mesh check 'embedding': volume " + std::to_string(size) +
-                                            " instead of " + std::to_string(expected));
-    }
-    return {};
+  [[nodiscard]] double volume_of(TetId t) const {
+    const Point3 d = mesh_.corner_point(t, 3);
+    const Point3 a = mesh_.corner_point(t, 0) - d, b = mesh_.corner_point(t, 1) - d;
+    return -dot(cross(a, b), mesh_.corner_point(t, 2) - d) / 6;
+  }
+
+  [[nodiscard]] Result<void> volume(double expected) const {
+    const double size = report_.volume;
+    if (expected <= 0 || std::abs(size - expected) <= kVolumeSlack * expected) return {};
+    return fail(ErrorCode::kInternal, "mesh check 'embedding': volume " + std::to_string(size) +
+                                          " instead of " + std::to_string(expected));
   }
 
   void delaunay() {
@@ -236,8 +234,17 @@ class Checker {
     }
   }
 
+  struct Seen {  // of a vertex
+    std::uint32_t segment_ends = 0;
+    std::uint32_t facets = 0;
+    bool other_facet = false;  // a facet that is not the vertex's parent
+    bool used = false;
+  };
+
   const QuotientTetrahedralization& mesh_;
   TetrahedraReport report_;
+  EdgeMap found_;           // subsegments that are edges of tetrahedra
+  std::vector<Seen> seen_;  // per vertex
 };
 
 }  // namespace

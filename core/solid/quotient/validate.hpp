@@ -18,7 +18,7 @@
 namespace symcell::solid {
 
 struct TetrahedraReport {
-  double volume = 0;                // of the quotient mesh: full volume / n; from kEmbedding on
+  double volume = 0;                // of the quotient mesh: full volume / n; from kIncidence on
   std::uint64_t free_faces = 0;     // inner faces that are no facets; of kDelaunay
   std::uint64_t certain_flips = 0;  // those of them that are certainly not locally Delaunay
 };
