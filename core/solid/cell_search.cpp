@@ -9,6 +9,7 @@
 #include "core/geometry/rotation.hpp"
 #include "core/guard/check_cell.hpp"
 #include "core/solid/cut/cut_cell.hpp"
+#include "core/solid/sector/mesh_boundary.hpp"
 
 namespace symcell::solid {
 namespace {
@@ -86,10 +87,11 @@ Result<void> check_finished(const SymmetryCellMesh& cell,
 Result<CellSearch::Found> CellSearch::run() {
   for (int cells = 1;;) {
     if (wants_another_start()) {
-      SYMCELL_TRY(mesh_another_start());
+      SYMCELL_TRY(mesh_another_start(starts_));
       continue;
     }
     if (!best_) return fail(last_);
+    SYMCELL_TRY(mesh_again());
     auto cell = cell_of_best();
     if (cell) return Found{std::move(*best_), std::move(*cell)};
     // Rarely, in narrow sectors, a mesh has no cell without flaws: another one has.
@@ -116,12 +118,12 @@ bool CellSearch::wants_another_start() {
 }
 
 // An error: no other start is to be tried.
-Result<void> CellSearch::mesh_another_start() {
+Result<void> CellSearch::mesh_another_start(Starts& starts) {
   const StartLimits& limits = tuning_.starts;
   ++meshed_;
   Stopwatch watch;
   if (!best_) context_.report(Phase::kInitial, 0.08);
-  auto solid = starts_.next(context_);
+  auto solid = starts.next(context_);
   timings_.initial += watch.lap();
   const std::uint64_t most =
       best_ ? limits.most_times_larger * best_->count() : std::numeric_limits<std::uint64_t>::max();
@@ -131,7 +133,7 @@ Result<void> CellSearch::mesh_another_start() {
   timings_.refine += watch.lap();
   if (refined) {
     if (!best_ || is_better(*refined, *best_, options_, limits)) best_ = std::move(*refined);
-    starts_.set_has_mesh(true);
+    starts.set_has_mesh(true);
     return {};
   }
   last_ = refined.error();
@@ -139,6 +141,36 @@ Result<void> CellSearch::mesh_another_start() {
   const bool may_go_on = best_ || last_.code == ErrorCode::kInternal;
   if (!may_go_on || last_.code == ErrorCode::kCancelled) return error_of(refined);
   out_of_time_ = !context_.check();
+  return {};
+}
+
+// A mesh with a size bound's number of tetrahedra has no fewer from another surface.
+bool CellSearch::is_worth_meshing_again() const {
+  const StartLimits& limits = tuning_.starts;
+  if (options_.plain || out_of_time_) return false;
+  if (best_->guarded > 0) return best_->count() <= limits.mendable_again;
+  return best_->count() <= limits.cell_again &&
+         static_cast<double>(best_->count()) > limits.sized_share * best_->least_count;
+}
+
+// The boundary of a mesh is a better surface to mesh than the model's: its triangles are round, and
+// as large as the mesh lets them be. It is improved as any other and held against the model.
+Result<void> CellSearch::mesh_again() {
+  const StartLimits& limits = tuning_.starts;
+  for (int again = 0; again < limits.meshes_again && is_worth_meshing_again(); ++again) {
+    const auto source = source_.with_surface(full_boundary(best_->solid.mesh));
+    if (!source) return {};
+    StartLimits few = limits;
+    few.sectors = limits.sectors_again;
+    few.compared = limits.compared_again;
+    Starts starts(*source, few);
+    starts.set_has_mesh(true);
+    const double before = cost(*best_, limits);
+    const std::uint64_t guarded = best_->guarded;
+    SYMCELL_TRY(mesh_another_start(starts));
+    const bool fewer_bad = best_->guarded < guarded;
+    if (!fewer_bad && cost(*best_, limits) > limits.worthwhile_again * before) break;
+  }
   return {};
 }
 

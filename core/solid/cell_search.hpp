@@ -46,7 +46,9 @@ class CellSearch {
 
  private:
   [[nodiscard]] bool wants_another_start();
-  [[nodiscard]] Result<void> mesh_another_start();
+  [[nodiscard]] Result<void> mesh_another_start(Starts& starts);
+  [[nodiscard]] bool is_worth_meshing_again() const;
+  [[nodiscard]] Result<void> mesh_again();
   [[nodiscard]] Result<SymmetryCellMesh> cell_of_best();
   void forget_best();
 

@@ -10,6 +10,7 @@
 
 #include "core/base/error.hpp"
 #include "core/base/execution_context.hpp"
+#include "core/geometry/indexed_surface.hpp"
 #include "core/solid/sector/sector.hpp"
 #include "core/solid/symmetry/solid_symmetry.hpp"
 
@@ -37,6 +38,14 @@ class SectorSource {
   // Errors: as symmetrising it with that fold given.
   [[nodiscard]] virtual Result<std::unique_ptr<SectorSource>> with_fold(
       std::int32_t fold, ExecutionContext& context) const = 0;
+
+  // The same model with the boundary of a mesh, in the local frame, with all of its copies, as the
+  // surface that sectors are cut from; they are held against the model as ever. Null: where a mesh
+  // keeps the facets as given.
+  [[nodiscard]] virtual std::unique_ptr<SectorSource> with_surface(
+      IndexedSurface /*boundary*/) const {
+    return nullptr;
+  }
 
   // Looks at points of a finished mesh's boundary, in the local frame, with all of their copies:
   // whether each is as near to the model's surface as the tolerance says. Where a mesh keeps the

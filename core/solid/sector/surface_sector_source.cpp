@@ -264,6 +264,14 @@ Result<std::unique_ptr<SectorSource>> SurfaceSectorSource::with_fold(
   return other;
 }
 
+std::unique_ptr<SectorSource> SurfaceSectorSource::with_surface(IndexedSurface boundary) const {
+  auto other = std::make_unique<SurfaceSectorSource>(*this);
+  other->full_ = std::move(boundary);
+  other->candidates_.clear();
+  other->choose_candidates();
+  return other;
+}
+
 // What each share of the tolerance leads to differs from part to part, and how much of it the
 // symmetry error has used up from place to place: a result that is no longer the input's shape is
 // none.

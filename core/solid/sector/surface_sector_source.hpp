@@ -46,6 +46,7 @@ class SurfaceSectorSource final : public SectorSource {
   [[nodiscard]] Result<Sector> sector(std::int32_t index, ExecutionContext& context) const override;
   [[nodiscard]] Result<std::unique_ptr<SectorSource>> with_fold(
       std::int32_t fold, ExecutionContext& context) const override;
+  [[nodiscard]] std::unique_ptr<SectorSource> with_surface(IndexedSurface boundary) const override;
   [[nodiscard]] Result<void> check_boundary(std::span<const Point3> points,
                                             ExecutionContext& context) const override;
 
@@ -82,10 +83,10 @@ class SurfaceSectorSource final : public SectorSource {
   double noise_;    // of coordinates
   double volume_;   // of the input
   double area_;     // likewise
-  IndexedSurface full_;          // local frame
-  BoundaryTopology topology_;    // of full_
-  TriangleTree tree_;            // of full_
-  std::vector<Point3> samples_;  // of full_
+  IndexedSurface full_;          // that sectors are cut from; local frame
+  BoundaryTopology topology_;    // of the input
+  TriangleTree tree_;            // of the input
+  std::vector<Point3> samples_;  // of the input
   std::vector<Candidate> candidates_;
   std::int32_t preferred_ = 0;  // of them: with the whole tolerance
 };
