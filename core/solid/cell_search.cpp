@@ -87,7 +87,7 @@ Result<void> check_finished(const SymmetryCellMesh& cell,
 Result<CellSearch::Found> CellSearch::run() {
   for (int cells = 1;;) {
     if (wants_another_start()) {
-      SYMCELL_TRY(mesh_another_start(starts_));
+      SYMCELL_TRY(mesh_another_start());
       continue;
     }
     if (!best_) return fail(last_);
@@ -117,30 +117,44 @@ bool CellSearch::wants_another_start() {
   return should_try_another_start(*best_, meshed_, starts_.effort(), options_, tuning_);
 }
 
-// An error: no other start is to be tried.
-Result<void> CellSearch::mesh_another_start(Starts& starts) {
+// No mesh: another start may have one. An error: no other start is to be tried.
+Result<std::optional<RefinedSolid>> CellSearch::mesh_start(Starts& starts,
+                                                           const RoundLimits& rounds) {
   const StartLimits& limits = tuning_.starts;
   ++meshed_;
   Stopwatch watch;
   if (!best_) context_.report(Phase::kInitial, 0.08);
   auto solid = starts.next(context_);
   timings_.initial += watch.lap();
-  const std::uint64_t most =
-      best_ ? limits.most_times_larger * best_->count() : std::numeric_limits<std::uint64_t>::max();
-  auto refined =
-      solid ? refine_and_improve(std::move(*solid), options_, most, context_, tuning_.rounds)
-            : error_of(solid);
+  const bool any_size = !best_ || (rounds.most_growths > 0 &&
+                                   tuning_.rounds.is_many_bad(best_->guarded, best_->count()));
+  const std::uint64_t most = any_size ? std::numeric_limits<std::uint64_t>::max()
+                                      : limits.most_times_larger * best_->count();
+  auto refined = solid ? refine_and_improve(std::move(*solid), options_, most, context_, rounds)
+                       : error_of(solid);
   timings_.refine += watch.lap();
   if (refined) {
-    if (!best_ || is_better(*refined, *best_, options_, limits)) best_ = std::move(*refined);
     starts.set_has_mesh(true);
-    return {};
+    return std::optional(std::move(*refined));
   }
   last_ = refined.error();
   // A mesh that turns out invalid is the fault of one cut.
   const bool may_go_on = best_ || last_.code == ErrorCode::kInternal;
   if (!may_go_on || last_.code == ErrorCode::kCancelled) return error_of(refined);
   out_of_time_ = !context_.check();
+  return std::optional<RefinedSolid>{};
+}
+
+void CellSearch::keep_if_better(RefinedSolid mesh) {
+  if (!best_ || is_better(mesh, *best_, options_, tuning_.starts)) best_ = std::move(mesh);
+}
+
+Result<void> CellSearch::mesh_another_start() {
+  RoundLimits rounds = tuning_.rounds;
+  if (source_.may_change_surface() && tuning_.starts.meshes_again > 0) rounds.most_growths = 0;
+  auto mesh = mesh_start(starts_, rounds);
+  if (!mesh) return error_of(mesh);
+  if (*mesh) keep_if_better(std::move(**mesh));
   return {};
 }
 
@@ -154,22 +168,32 @@ bool CellSearch::is_worth_meshing_again() const {
 }
 
 // The boundary of a mesh is a better surface to mesh than the model's: its triangles are round, and
-// as large as the mesh lets them be. It is improved as any other and held against the model.
+// as large as the mesh lets them be. It is improved as any other and held against the model. What
+// is smaller but has more bad tetrahedra may be the way to one that is both.
 Result<void> CellSearch::mesh_again() {
   const StartLimits& limits = tuning_.starts;
+  if (!source_.may_change_surface() || !is_worth_meshing_again()) return {};
+  StartLimits few = limits;
+  few.sectors = limits.sectors_again;
+  few.compared = limits.compared_again;
+  IndexedSurface boundary = full_boundary(best_->solid.mesh);
+  double last_cost = cost(*best_, limits);
+  std::uint64_t last_guarded = best_->guarded;
   for (int again = 0; again < limits.meshes_again && is_worth_meshing_again(); ++again) {
-    const auto source = source_.with_surface(full_boundary(best_->solid.mesh));
-    if (!source) return {};
-    StartLimits few = limits;
-    few.sectors = limits.sectors_again;
-    few.compared = limits.compared_again;
+    const auto source = source_.with_surface(boundary);
     Starts starts(*source, few);
     starts.set_has_mesh(true);
-    const double before = cost(*best_, limits);
-    const std::uint64_t guarded = best_->guarded;
-    SYMCELL_TRY(mesh_another_start(starts));
-    const bool fewer_bad = best_->guarded < guarded;
-    if (!fewer_bad && cost(*best_, limits) > limits.worthwhile_again * before) break;
+    auto mesh = mesh_start(starts, tuning_.rounds);
+    if (!mesh) return error_of(mesh);
+    if (!*mesh) return {};
+    const RefinedSolid& made = **mesh;
+    const bool goes_on =
+        made.guarded < last_guarded || cost(made, limits) < limits.worthwhile_again * last_cost;
+    if (goes_on) boundary = full_boundary(made.solid.mesh);
+    last_cost = cost(made, limits);
+    last_guarded = made.guarded;
+    keep_if_better(std::move(**mesh));
+    if (!goes_on) return {};
   }
   return {};
 }

@@ -46,7 +46,10 @@ class CellSearch {
 
  private:
   [[nodiscard]] bool wants_another_start();
-  [[nodiscard]] Result<void> mesh_another_start(Starts& starts);
+  [[nodiscard]] Result<std::optional<RefinedSolid>> mesh_start(Starts& starts,
+                                                               const RoundLimits& rounds);
+  void keep_if_better(RefinedSolid mesh);
+  [[nodiscard]] Result<void> mesh_another_start();
   [[nodiscard]] bool is_worth_meshing_again() const;
   [[nodiscard]] Result<void> mesh_again();
   [[nodiscard]] Result<SymmetryCellMesh> cell_of_best();

@@ -33,15 +33,15 @@ struct StartLimits {
   // Larger cells are meshed once, but for bad tetrahedra, and up to the second of these.
   std::uint64_t small_cell = 8'000;
   std::uint64_t mendable_cell = 60'000;
-  // Meshes made from the boundary of the best one, as long as each takes off more than a share or
-  // has fewer bad tetrahedra; cuts that are compared for one, and tried before it is given up.
-  int meshes_again = 3;
+  // Meshes made from the boundary of the one before, as long as each takes off more than a share or
+  // has fewer bad tetrahedra; cuts that are compared for one, and tried before it is given up. A third
+  // takes off a few percent more, for as much time again.
+  int meshes_again = 2;
   double worthwhile_again = 0.95;
   std::size_t compared_again = 2;
   std::int32_t sectors_again = 8;
-  std::uint64_t cell_again =
-      20'000;  // larger cells are left, but for bad tetrahedra up to the next
-  std::uint64_t mendable_again = 250'000;
+  std::uint64_t cell_again = 20'000;       // larger cells are left as they are,
+  std::uint64_t mendable_again = 250'000;  // but for bad tetrahedra up to these
   // Before its improvement a mesh of a further start may be larger than the best one by this factor.
   std::uint64_t most_times_larger = 2;
   // Triangles that are worked on for the sake of better or fewer tetrahedra.

@@ -211,7 +211,7 @@ class HttpServer::Impl final : public httplib::Server {
                 httplib::Response& response,
                 const httplib::ContentReader* reader) {
     Exchange& exchange = *current_exchange;
-    Call call{request, response, reader, exchange, {}, {}};
+    Call call{request, response, reader, exchange, parse_query(request.target), {}, {}};
     response.status = 200;
     const std::string shared = sites_.shared_with(call.header("Origin"));
     if (!shared.empty()) response.set_header("Access-Control-Allow-Origin", shared);

@@ -93,7 +93,7 @@ void submit_job(Call& call, ServiceContext& context) {
 
 // False: a parameter is not acceptable, the call is answered.
 bool parse_filter(Call& call, JobFilter& filter) {
-  if (call.request.has_param("state")) {
+  if (call.has_parameter("state")) {
     filter.state = job_state_from_name(call.parameter("state"));
     if (!filter.state) {
       respond_problem(call, ServiceProblem::kBadRequest,
@@ -101,7 +101,7 @@ bool parse_filter(Call& call, JobFilter& filter) {
       return false;
     }
   }
-  if (call.request.has_param("limit")) {
+  if (call.has_parameter("limit")) {
     const auto limit = parse_whole_number(call.parameter("limit"));
     if (!limit || *limit < 1 || *limit > kMaxListLimit) {
       respond_problem(call, ServiceProblem::kBadRequest,
@@ -110,7 +110,7 @@ bool parse_filter(Call& call, JobFilter& filter) {
     }
     filter.limit = static_cast<std::size_t>(*limit);
   }
-  if (call.request.has_param("cursor")) {
+  if (call.has_parameter("cursor")) {
     filter.before_sequence = parse_whole_number(call.parameter("cursor"));
     if (!filter.before_sequence) {
       respond_problem(call, ServiceProblem::kBadRequest,

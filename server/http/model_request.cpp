@@ -61,8 +61,7 @@ Result<MeshOptions> parse_options_text(std::string_view text) {
 // From the document, if it has options, else from the query; both at once would leave open which
 // one wins.
 Result<MeshOptions> parse_options(const Call& call, std::optional<std::string_view> document) {
-  std::vector<std::pair<std::string, std::string>> texts(call.request.params.begin(),
-                                                         call.request.params.end());
+  std::vector<std::pair<std::string, std::string>> texts(call.query.begin(), call.query.end());
   if (!document) return options_from_texts(texts);
   if (!texts.empty()) {
     return fail(ErrorCode::kBadOption,

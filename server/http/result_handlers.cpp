@@ -119,7 +119,7 @@ std::optional<Job> succeeded_job(Call& call, ServiceContext& context) {
 
 // By ?format=, else by Accept.
 std::optional<MeshFormat> mesh_format_of(Call& call, std::int32_t dimension) {
-  if (call.request.has_param("format")) {
+  if (call.has_parameter("format")) {
     const auto format = mesh_format_from_name(call.parameter("format"));
     if (!format) {
       respond_problem(call, ServiceProblem::kBadRequest, "format is one of " + mesh_format_list());
@@ -157,7 +157,7 @@ std::optional<WriteOptions> write_options_of(Call& call) {
   }
   for (const DeckOptionInfo& info : deck_option_table()) {
     const std::string name(info.name);
-    if (!call.request.has_param(name.c_str())) continue;
+    if (!call.has_parameter(name)) continue;
     const auto set = set_deck_option(options.deck, name, call.parameter(name.c_str()));
     if (!set) {
       respond_error(call, set.error(), "");
@@ -175,7 +175,7 @@ std::string variant_of(Call& call, MeshFormat format) {
   std::string texts;
   for (const DeckOptionInfo& info : deck_option_table()) {
     const std::string name(info.name);
-    if (call.request.has_param(name.c_str())) {
+    if (call.has_parameter(name)) {
       texts += name + "=" + call.parameter(name.c_str()) + "\n";
     }
   }

@@ -39,11 +39,13 @@ class SectorSource {
   [[nodiscard]] virtual Result<std::unique_ptr<SectorSource>> with_fold(
       std::int32_t fold, ExecutionContext& context) const = 0;
 
+  // Whether a mesh's boundary need only be near the model's surface. Where not, it keeps the facets.
+  [[nodiscard]] virtual bool may_change_surface() const { return false; }
   // The same model with the boundary of a mesh, in the local frame, with all of its copies, as the
-  // surface that sectors are cut from; they are held against the model as ever. Null: where a mesh
-  // keeps the facets as given.
+  // surface that sectors are cut from; they are held against the model as ever.
+  // Null unless may_change_surface.
   [[nodiscard]] virtual std::unique_ptr<SectorSource> with_surface(
-      IndexedSurface /*boundary*/) const {
+      const IndexedSurface& /*boundary*/) const {
     return nullptr;
   }
 

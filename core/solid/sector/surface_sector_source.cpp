@@ -264,9 +264,11 @@ Result<std::unique_ptr<SectorSource>> SurfaceSectorSource::with_fold(
   return other;
 }
 
-std::unique_ptr<SectorSource> SurfaceSectorSource::with_surface(IndexedSurface boundary) const {
+std::unique_ptr<SectorSource> SurfaceSectorSource::with_surface(
+    const IndexedSurface& boundary) const {
   auto other = std::make_unique<SurfaceSectorSource>(*this);
-  other->full_ = std::move(boundary);
+  other->full_ = boundary;
+  other->of_mesh_ = true;
   other->candidates_.clear();
   other->choose_candidates();
   return other;
@@ -308,7 +310,7 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
     if (made > kManyTriangles + kManyTimes * given.triangles.size()) break;
   }
   if (!best) return fail(last);
-  if (best->narrow > 0 || best->many_thin()) {
+  if (!of_mesh_ && (best->narrow > 0 || best->many_thin())) {
     SYMCELL_TRY(improve_again(surface, *best, candidate, flatness, context));
   }
   best->made += made;

@@ -46,7 +46,9 @@ class SurfaceSectorSource final : public SectorSource {
   [[nodiscard]] Result<Sector> sector(std::int32_t index, ExecutionContext& context) const override;
   [[nodiscard]] Result<std::unique_ptr<SectorSource>> with_fold(
       std::int32_t fold, ExecutionContext& context) const override;
-  [[nodiscard]] std::unique_ptr<SectorSource> with_surface(IndexedSurface boundary) const override;
+  [[nodiscard]] bool may_change_surface() const override { return true; }
+  [[nodiscard]] std::unique_ptr<SectorSource> with_surface(
+      const IndexedSurface& boundary) const override;
   [[nodiscard]] Result<void> check_boundary(std::span<const Point3> points,
                                             ExecutionContext& context) const override;
 
@@ -84,6 +86,7 @@ class SurfaceSectorSource final : public SectorSource {
   double volume_;   // of the input
   double area_;     // likewise
   IndexedSurface full_;          // that sectors are cut from; local frame
+  bool of_mesh_ = false;         // full_ is the boundary of a mesh
   BoundaryTopology topology_;    // of the input
   TriangleTree tree_;            // of the input
   std::vector<Point3> samples_;  // of the input

@@ -61,6 +61,9 @@ TEST_F(ResultsHttpTest, DecksTakeTheirOptionsFromTheQuery) {
   EXPECT_EQ(modal->status, 200) << modal->body;
   EXPECT_NE(modal->body.find("*FREQUENCY"), std::string::npos);
   EXPECT_NE(plain->get_header_value("ETag"), modal->get_header_value("ETag"));
+  // What follows the first "=" is the value, whatever is in it.
+  problem_of(client().Get(path_ + "/full?format=inp&material=99=steel"), 400);
+  problem_of(client().Get(path_ + "/full?format=inp&material=99%3Dsteel"), 400);
   // Before a byte is sent.
   problem_of(client().Get(path_ + "/full?format=inp&analysis=modal"), 400);
   problem_of(client().Get(path_ + "/full?format=inp&material=wood"), 400);

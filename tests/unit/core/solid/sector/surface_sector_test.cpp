@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/solid/sector/symmetrise.hpp"
+#include "core/solid/surface/weld.hpp"
 #include "tests/support/sector_checks.hpp"
 #include "tests/support/surface_builders.hpp"
 
@@ -69,6 +70,30 @@ TEST(SurfaceSectorSource, PointsOffTheSurfaceAreFound) {
   EXPECT_TRUE((*source)->check_boundary(points, context));
   top->z += 0.2 * tolerance;
   EXPECT_EQ((*source)->check_boundary(points, context).error().code, ErrorCode::kInternal);
+}
+
+// Sectors of another surface are held against the input, not against what they are cut from.
+TEST(SurfaceSectorSource, SectorsOfAnotherSurfaceAreTheInputs) {
+  const PrismShape shape;
+  const TriangleSurface given = asymmetric_prism(shape, 7), other = asymmetric_prism(shape, 8);
+  ExecutionContext context;
+  const auto source = symmetrise_surface(given, with_fold(shape.fold), context);
+  ASSERT_TRUE(source) << source.error().message;
+  const Symmetry& symmetry = (*source)->symmetry();
+  IndexedSurface surface = weld_exactly(other);
+  for (Point3& p : surface.points) p = symmetry.frame.to_local(p);
+  const auto cut_any = [&](const SectorSource& from) {
+    for (std::int32_t i = 0; i < from.preferred(); ++i) {
+      if (from.sector(i, context)) return true;
+    }
+    return false;
+  };
+  const auto same = (*source)->with_surface(surface);
+  ASSERT_TRUE(same);
+  EXPECT_TRUE(cut_any(*same));
+  const double tolerance = kSurfaceSymmetryToleranceRel * symmetry.diameter;
+  for (Point3& p : surface.points) p.z += 1.5 * tolerance;
+  EXPECT_FALSE(cut_any(*(*source)->with_surface(surface)));
 }
 
 class PrismFolds : public testing::TestWithParam<std::int32_t> {};
