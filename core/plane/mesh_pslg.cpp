@@ -211,9 +211,11 @@ struct Refined {
   WorkDone work;
 };
 
+// `graded`: what the gradation allows, found on the first mesh if null.
 Result<Refined> refine(const Pslg& model,
                        const SymmetricPslg& symmetric,
                        const MeshOptions& options,
+                       std::shared_ptr<const GradedSize>& graded,
                        Stopwatch& watch,
                        Statistics& stats,
                        ExecutionContext& context) {
@@ -221,10 +223,10 @@ Result<Refined> refine(const Pslg& model,
   if (!sizes) return error_of(sizes);
   auto start = triangulate_initial(symmetric, context);
   if (!start) return error_of(start);
-  if (options.gradation < kInfinity) {
-    sizes->graded =
-        std::make_shared<GradedSize>(grade_sizes(start->mesh, *sizes, options.gradation));
+  if (options.gradation < kInfinity && !graded) {
+    graded = std::make_shared<GradedSize>(grade_sizes(start->mesh, *sizes, options.gradation));
   }
+  sizes->graded = graded;
   stats.timings_ms.initial += watch.lap();
   Criteria criteria(start->mesh, start->subdomains, options, *sizes);
   SYMCELL_TRY(check_area_budget(*start, criteria, context));
@@ -238,7 +240,8 @@ Result<Refined> refine(const Pslg& model,
 // Vertices that refinement sets on chords belong on the arcs: they become vertices of the model
 // there, and meshing begins anew, until no chord is split. Each round leaves a quarter of the
 // distance between chord and arc. `symmetric` becomes what was meshed last. Where the finer chords
-// cannot be meshed, as in a gap that they close, those before stay.
+// cannot be meshed, as in a gap that they close, those before stay. Edges grow away from what is
+// small in the model, not from chords that were divided for their sake: those would get ever shorter.
 Result<Refined> refine_on_arcs(const Pslg& model,
                                SymmetricPslg& symmetric,
                                const MeshOptions& options,
@@ -246,11 +249,12 @@ Result<Refined> refine_on_arcs(const Pslg& model,
                                Statistics& stats,
                                ExecutionContext& context) {
   constexpr int kMostRounds = 8;
-  auto best = refine(model, symmetric, options, watch, stats, context);
+  std::shared_ptr<const GradedSize> graded;
+  auto best = refine(model, symmetric, options, graded, watch, stats, context);
   for (int round = 0; best && round < kMostRounds; ++round) {
     auto closer = split_chords(symmetric, best->start.mesh);
     if (!closer) break;
-    auto next = refine(model, *closer, options, watch, stats, context);
+    auto next = refine(model, *closer, options, graded, watch, stats, context);
     if (!next && is_limit(next.error().code)) return next;
     if (!next) break;
     symmetric = std::move(*closer);
@@ -323,8 +327,9 @@ Result<MeshOutcome> mesh_pslg(const Pslg& model,
   SymmetricPslg meshed = symmetric;
   SYMCELL_TRY(divide_segments(meshed, options.divisions));
   const bool has_arcs = !meshed.bulges.empty();
+  std::shared_ptr<const GradedSize> graded;
   const auto refined = has_arcs ? refine_on_arcs(model, meshed, options, watch, stats, context)
-                                : refine(model, meshed, options, watch, stats, context);
+                                : refine(model, meshed, options, graded, watch, stats, context);
   if (!refined) return error_of(refined);
   const QuotientTriangulation& mesh = refined->start.mesh;
   record(refined->work, mesh, symmetric.orbit_points.size(), stats.refinement);

@@ -296,6 +296,48 @@ TEST(MeshBoundsProperty, EdgesGrowAwayFromNarrowPlaces) {
   }
 }
 
+// A disc with a hole out of its centre, each circle an arc and one more.
+Pslg disc_with_hole() {
+  Pslg model;
+  model.vertices = {{40, 0}, {-40, 0}, {33, 0}, {27, 0}};
+  model.segments = {{0, 1, 1}, {1, 0, 1}, {2, 3, 2}, {3, 2, 2}};
+  model.bulges = {1, 1, 1, 1};
+  model.holes = {{30, 0}};
+  return model;
+}
+
+// Chords that are divided for the sake of the gradation are no small features to grow away from.
+TEST(MeshBoundsProperty, EdgesOnArcsGrowByTheGradation) {
+  MeshOptions options;
+  options.fold = 1;
+  const auto free = mesh(disc_with_hole(), options);
+  ASSERT_TRUE(free) << free.error().message;
+  std::uint64_t most = 20'000;
+  for (const double gradation : {1.05, 1.2, 1.5}) {
+    options.gradation = gradation;
+    const auto graded = mesh(disc_with_hole(), options);
+    ASSERT_TRUE(graded) << graded.error().message;
+    EXPECT_GE(graded->statistics.cell.elements, free->statistics.cell.elements);
+    EXPECT_LE(graded->statistics.cell.elements, most) << gradation;
+    most = graded->statistics.cell.elements;
+  }
+}
+
+// Chords are edges that the mesher makes.
+TEST(MeshBoundsProperty, ChordsAreNoShorterThanTheLeastEdge) {
+  MeshOptions options;
+  options.fold = 1;
+  options.min_edge = 1;
+  const auto outcome = mesh(disc_with_hole(), options);
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  const RestoredMesh full = restore(outcome->mesh);
+  for (std::size_t h = 0; h < 3 * full.triangles.size(); ++h) {
+    EXPECT_GE(distance(full.at(full.from(h)), full.at(full.to(h))), 1);
+  }
+  EXPECT_TRUE(outcome->statistics.exempt.empty());
+  EXPECT_GE(outcome->statistics.cell.min_angle_deg, 30);
+}
+
 TEST(MeshBoundsProperty, DividedSegmentsHaveEqualPartsAndNoOtherPoints) {
   constexpr std::int32_t kFold = 7, kParts = 9;
   SectorBuilder builder = ring_of_markers(kFold);

@@ -130,9 +130,15 @@ class Discretiser {
     // What the model asks for stands in place of the option.
     const double error = step < kCoarsestChord ? kMaxChordErrorRel : options_.chord_error_rel;
     step = std::min(step, widest_chord(chain.radius, error, options_.max_edge));
-    const double count = std::abs(chain.angle) / step - kSameCount;
+    double count = std::ceil(std::abs(chain.angle) / step - kSameCount);
+    if (options_.min_edge > 0) {
+      // A chord is an edge that the mesher makes: not shorter than the least.
+      const double least = 2 * std::asin(std::min(1.0, options_.min_edge / (2 * chain.radius)));
+      const double coarsest = std::ceil(std::abs(chain.angle) / kCoarsestChord - kSameCount);
+      count = std::min(count, std::max(coarsest, std::floor(std::abs(chain.angle) / least)));
+    }
     const auto most = static_cast<double>(kMaxPslgVertices) + 1;
-    return static_cast<std::int64_t>(std::clamp(std::ceil(count), 1.0, most)) << chain.doublings;
+    return static_cast<std::int64_t>(std::clamp(count, 1.0, most)) << chain.doublings;
   }
 
   [[nodiscard]] std::int64_t chords(const ArcChain& chain, std::int64_t common) const {
