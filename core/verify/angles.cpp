@@ -43,10 +43,11 @@ class AngleChecker {
                " degrees, which nothing in the model forces";
       });
     }
-    flaws.report(checks_, "full.min_angle",
-                 exempt == 0 ? ""
-                             : std::to_string(exempt) + " elements are below, down to " +
-                                   shown(least) + " degrees, as the model forces");
+    flaws.report_beyond_bound(checks_, "full.min_angle",
+                              exempt == 0
+                                  ? ""
+                                  : std::to_string(exempt) + " elements are below, down to " +
+                                        shown(least) + " degrees, as the model forces");
   }
 
  private:

@@ -167,5 +167,12 @@ bool Flaws::report(Checks& checks, std::string name, std::string fine) const {
   return checks.add(std::move(name), false, first_ + more);
 }
 
+bool Flaws::report_beyond_bound(Checks& checks, std::string name, std::string fine) const {
+  if (none() || count_ > checks.most_exempt()) {
+    return report(checks, std::move(name), std::move(fine));
+  }
+  return checks.add(std::move(name), true, std::to_string(count_) + " elements are exempt");
+}
+
 }  // namespace internal
 }  // namespace symcell

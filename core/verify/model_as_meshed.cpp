@@ -152,6 +152,7 @@ Result<std::optional<ModelAsMeshed>> model_as_meshed(const Pslg& model,
   asked.sector = options.sector;
   asked.center = options.center;
   asked.repair = options.repair;
+  asked.symmetry_tolerance_rel = options.symmetry_tolerance_rel;
   ExecutionContext context;
   auto input = plane::prepare_input(model, asked, context);
   if (!input) return error_of(input);

@@ -33,7 +33,7 @@ class RegionChecker {
     holes_found_.report(checks, "model.holes");
     seeds_.report(checks, "model.regions");
     borders_.report(checks, "model.region_borders");
-    large.report(checks, "model.region_measure");
+    large.report_beyond_bound(checks, "model.region_measure");
   }
 
  private:

@@ -69,12 +69,16 @@ struct ElementEdge {
 // Collects the checks of one report.
 class Checks {
  public:
-  explicit Checks(VerifyReport& report) : report_(&report) {}
+  // `most_exempt`: elements of the full mesh that may break a bound.
+  explicit Checks(VerifyReport& report, std::size_t most_exempt = 0)
+      : report_(&report), most_exempt_(most_exempt) {}
   bool add(std::string name, bool holds, std::string detail);
   void skip(std::string name, std::string why);
+  [[nodiscard]] std::size_t most_exempt() const { return most_exempt_; }
 
  private:
   VerifyReport* report_;
+  std::size_t most_exempt_;
 };
 
 // What one check finds: the first flaw in words, and how many there are.
@@ -88,6 +92,8 @@ class Flaws {
   [[nodiscard]] bool none() const { return count_ == 0; }
   // Fails if there is a flaw, and reports it; else reports `fine`.
   bool report(Checks& checks, std::string name, std::string fine = {}) const;
+  // The same of elements beyond a bound, of which as many as are exempt may be.
+  bool report_beyond_bound(Checks& checks, std::string name, std::string fine = {}) const;
 
  private:
   std::size_t count_ = 0;

@@ -47,7 +47,12 @@ class Verifier {
            const Model* model,
            const VerifyOptions& options,
            VerifyReport& report)
-      : cell_(cell), full_(full), model_(model), options_(options), checks_(report) {}
+      : cell_(cell),
+        full_(full),
+        model_(model),
+        options_(options),
+        checks_(report,
+                options.exempt_elements * static_cast<std::size_t>(std::max(cell.fold, 1))) {}
 
   void run() {
     if (!internal::check_fields(cell_, "cell", checks_)) return;
@@ -122,7 +127,8 @@ class Verifier {
     if (!options_.sector) return true;
     auto whole = internal::all_sectors(
         surface, *options_.sector, AxisFrame::of_axis(cell_.axis_origin, cell_.axis_direction),
-        options_.model_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel));
+        options_.symmetry_tolerance_rel.value_or(
+            options_.model_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel)));
     if (!whole) {
       checks_.add("model.valid", false, whole.error().message);
       return false;

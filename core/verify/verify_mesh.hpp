@@ -99,6 +99,11 @@ struct VerifyOptions {
   std::optional<double> model_tolerance_rel;
   std::optional<double> min_angle_deg;  // planar: the bound that the mesh was made with
   std::optional<double> model_measure;  // area or volume; nullopt: computed from the model
+  // Elements of the cell that may be beyond the bounds of angles and regions: as the statistics count
+  // those that min_edge, keep_boundary or divisions left so.
+  std::size_t exempt_elements = 0;
+  // Of sectors, as they were meshed with; nullopt: the mesher's own.
+  std::optional<double> symmetry_tolerance_rel;
   // Of planar models, as they were meshed with (MeshOptions).
   std::optional<std::int32_t> sector;
   std::optional<Point2> center;

@@ -32,7 +32,9 @@ struct VerifyArguments {
   double tolerance = VerifyOptions{}.tolerance_rel;
   std::optional<double> model_tolerance;
   std::optional<double> min_angle;
+  std::size_t exempt = 0;
   std::optional<std::int32_t> sector;
+  std::optional<double> symmetry_tolerance;
   std::vector<double> center;
   std::string repair = "safe";
   bool json = false;
@@ -82,6 +84,8 @@ Result<bool> verify(const VerifyArguments& arguments) {
   options.tolerance_rel = arguments.tolerance;
   options.model_tolerance_rel = arguments.model_tolerance;
   options.min_angle_deg = arguments.min_angle;
+  options.exempt_elements = arguments.exempt;
+  options.symmetry_tolerance_rel = arguments.symmetry_tolerance;
   options.sector = arguments.sector;
   if (arguments.center.size() == 2) options.center = {arguments.center[0], arguments.center[1]};
   options.repair = arguments.repair == "all"    ? Repair::kAll
@@ -129,10 +133,20 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->type_name("DEG")
       ->check(CLI::Range(0.0, kMaxMinAngleDeg));
   command
+      ->add_option("--exempt", arguments->exempt,
+                   "so many elements of the cell may be beyond bounds of angle and area: what the\n"
+                   "statistics count under min_edge and kept_boundary [0]")
+      ->type_name("N");
+  command
       ->add_option("--sector", arguments->sector,
                    "the model is one of N sectors, as it was meshed with; of solids a surface")
       ->type_name("N")
       ->check(CLI::Range(2, kMaxFold));
+  command
+      ->add_option("--symmetry-tolerance", arguments->symmetry_tolerance,
+                   "with --sector: as it was meshed with, a share of the diameter")
+      ->type_name("T")
+      ->check(CLI::Range(0.0, 0.1));
   command->add_option("--center", arguments->center, "planar: the centre of the sectors [0,0]")
       ->type_name("X,Y")
       ->delimiter(',')

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/cell/warning.hpp"
+#include "core/geometry/point_grid.hpp"
 #include "core/geometry/rotation.hpp"
 #include "core/model/describe.hpp"
 #include "core/plane/input/curve_set.hpp"
@@ -20,6 +22,10 @@ namespace {
 
 // By which areas may differ beyond what chords make of arcs: bounds match to the tolerance.
 constexpr double kAreaRel = 1e-3;
+
+// Vertices of two copies that are so many tolerances apart, and more than one, were meant to be one:
+// what is left between them would be meshed as a step in the part.
+constexpr double kNearMisses = 100;
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -120,6 +126,39 @@ Result<Pslg> copies_of(const Pslg& sector, std::int32_t sectors, Point2 centre) 
   return whole;
 }
 
+// Copies 0 and all others stand for all pairs.
+Result<void> check_near_misses(const Pslg& whole,
+                               std::size_t sector_vertices,
+                               double tolerance,
+                               const MeshOptions& options) {
+  PointGrid near(kNearMisses * tolerance, whole.vertices.size());
+  for (std::size_t v = sector_vertices; v < whole.vertices.size(); ++v) {
+    near.insert(whole.vertices[v], static_cast<std::int32_t>(v));
+  }
+  double widest = tolerance;
+  std::size_t of = 0, other = 0;
+  for (std::size_t v = 0; v < sector_vertices; ++v) {
+    const std::int32_t met = near.nearest(whole.vertices[v]);
+    if (met < 0) continue;
+    const double off = distance(whole.vertices[v], whole.vertices[at(met)]);
+    if (off <= widest) continue;
+    widest = off;
+    of = v;
+    other = at(met) % sector_vertices;
+  }
+  if (widest <= tolerance) return {};
+  const double tolerance_rel = options.symmetry_tolerance_rel.value_or(kExactSymmetryToleranceRel);
+  const double off_rel = widest / tolerance * tolerance_rel;
+  return fail(ErrorCode::kNotSymmetric,
+              "vertex " + std::to_string(of) + " at " + describe_point(whole.vertices[of]) +
+                  " and the copy of vertex " + std::to_string(other) + " in another sector are " +
+                  describe_rounded(off_rel) + " of the diameter apart, the tolerance is " +
+                  describe_number(tolerance_rel) +
+                  "; give symmetry_tolerance=" + describe_number(tolerance_that_takes(off_rel)) +
+                  ", or coordinates with more digits",
+              {static_cast<std::int64_t>(of), static_cast<std::int64_t>(other)}, "/options/sector");
+}
+
 bool same_material(const Pslg& pslg, const Subdomain& left, const Subdomain& right) {
   if (!left.meshed || !right.meshed) return false;
   if ((left.region < 0) != (right.region < 0)) return false;
@@ -202,6 +241,15 @@ std::vector<char> curves_that_stay(const CurveSet& curves, const Pslg& whole, co
   return stays;
 }
 
+// Of the copies of a sound sector.
+Failure overlap(const Error& error, std::int32_t sectors) {
+  if (is_limit(error.code)) return fail(error);
+  return fail(ErrorCode::kNotSymmetric,
+              std::to_string(sectors) + " copies of the sector overlap (" + error.message +
+                  "); correct the number of sectors or the centre",
+              {}, "/options/sector");
+}
+
 // Copies that overlap and share parts of their outlines may make a sound model, but not this one.
 Result<void> check_area(double all, double one, std::int32_t sectors, const MeshOptions& options) {
   const double wanted = one * sectors;
@@ -224,6 +272,7 @@ Result<Pslg> make_whole(const Pslg& pslg,
                         ExecutionContext& context) {
   auto whole = copies_of(pslg, sectors, centre);
   if (!whole) return error_of(whole);
+  SYMCELL_TRY(check_near_misses(*whole, pslg.vertices.size(), tolerance, options));
   CurveSet curves(*whole, tolerance);
   curves.join(std::vector<char>(whole->vertices.size(), 1));
   curves.split();
@@ -241,7 +290,7 @@ Result<Pslg> make_whole(const Pslg& pslg,
   const auto sector = faces_of(pslg, of_one, context);
   if (!sector) return error_of(sector);
   auto faces = faces_of(*whole, options, context);
-  if (!faces) return error_of(faces);
+  if (!faces) return overlap(faces.error(), sectors);
   const std::size_t holes = whole->holes.size();
   add_holes_between(curves, sides_with_material(pslg, *sector), *faces, *whole);
   if (whole->holes.size() > holes) {

@@ -16,7 +16,8 @@ namespace symcell::plane {
 // what the copies enclose together without holding it, as the bore of a ring, gets a hole seed.
 // `tolerance`: distance by which the bounds may differ.
 // Requires: check_entities(pslg) passed.
-// Errors: kBadFold (fewer than 2 sectors), kNotSymmetric (the bounds do not meet; names a place),
+// Errors: kBadFold (fewer than 2 sectors), kNotSymmetric (the bounds do not meet, or all but meet;
+// names a place),
 // kTooLarge, and those of validate_pslg where sectors overlap.
 // `options`: of the chords of arcs, for what lies on their two sides.  Cost: O(nN log nN).
 [[nodiscard]] Result<Pslg> make_whole(const Pslg& pslg,

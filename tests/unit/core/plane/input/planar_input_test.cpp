@@ -163,5 +163,27 @@ TEST(PlanarInput, SectorsThatDoNotMeetAreRefused) {
   EXPECT_EQ(wrong.error().pointer, "/options/sector");
 }
 
+// Coordinates with few digits: no step is left between the copies.
+TEST(PlanarInput, SectorsThatAllButMeetAreRefusedWithTheToleranceThatTakesThem) {
+  for (const double off : {1.5e-6, 5e-6, 4e-5}) {
+    Pslg model = quarter();
+    double largest = 0;
+    for (const Point2 p : model.vertices) largest = std::max(largest, length(p));
+    model.vertices[0].x += off * largest;
+    MeshOptions options;
+    options.sector = 4;
+    ExecutionContext context;
+    const auto refused = prepare_input(model, options, context);
+    ASSERT_FALSE(refused) << off;
+    EXPECT_EQ(refused.error().code, ErrorCode::kNotSymmetric);
+    const std::string& message = refused.error().message;
+    const std::size_t mend = message.find("symmetry_tolerance=");
+    ASSERT_NE(mend, std::string::npos) << message;
+    options.symmetry_tolerance_rel = std::stod(message.substr(mend + 19));
+    EXPECT_LE(*options.symmetry_tolerance_rel, 2 * off);
+    EXPECT_TRUE(prepare_input(model, options, context)) << message;
+  }
+}
+
 }  // namespace
 }  // namespace symcell::plane
