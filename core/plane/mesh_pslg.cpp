@@ -128,6 +128,10 @@ std::size_t count_bad(const QuotientTriangulation& mesh, const Criteria& criteri
   return count;
 }
 
+// An edge shorter than so many least ones is not divided: smaller sizes would be asked for in vain,
+// and what is refused for their sake leaves bad angles.
+constexpr double kLeastSplitEdges = 2;
+
 // A further start is given up where refinement, which coarsening follows, makes this many times the
 // triangles of the best mesh: a higher bound may ask for a million where the one asked for needs none.
 constexpr std::size_t kHopeless = 8;
@@ -224,7 +228,8 @@ Result<Refined> refine(const Pslg& model,
   auto start = triangulate_initial(symmetric, context);
   if (!start) return error_of(start);
   if (options.gradation < kInfinity && !graded) {
-    graded = std::make_shared<GradedSize>(grade_sizes(start->mesh, *sizes, options.gradation));
+    graded = std::make_shared<GradedSize>(
+        grade_sizes(start->mesh, *sizes, options.gradation, kLeastSplitEdges * options.min_edge));
   }
   sizes->graded = graded;
   stats.timings_ms.initial += watch.lap();

@@ -306,6 +306,22 @@ Pslg disc_with_hole() {
   return model;
 }
 
+// No size is asked for that the least edge forbids.
+TEST(MeshBoundsProperty, GradationDoesNotAskForLessThanTheLeastEdge) {
+  MeshOptions options;
+  options.min_edge = 0.5;
+  const auto free = mesh(plate_with_gap(0.02), options);
+  options.gradation = 1.1;
+  const auto graded = mesh(plate_with_gap(0.02), options);
+  ASSERT_TRUE(free && graded);
+  const auto count = [](const MeshOutcome& outcome) {
+    std::uint64_t exempt = 0;
+    for (const auto& e : outcome.statistics.exempt) exempt += e.elements;
+    return exempt;
+  };
+  EXPECT_LE(count(*graded), 2 * count(*free));
+}
+
 // Chords that are divided for the sake of the gradation are no small features to grow away from.
 TEST(MeshBoundsProperty, EdgesOnArcsGrowByTheGradation) {
   MeshOptions options;

@@ -113,7 +113,8 @@ Result<LocalSizes> resolve_sizes(const Pslg& pslg,
 
 GradedSize grade_sizes(const QuotientTriangulation& initial,
                        const LocalSizes& sizes,
-                       double gradation) {
+                       double gradation,
+                       double least) {
   std::vector<double> size(initial.vertex_slots(), kInfinity);
   for (std::size_t v = 0; v < sizes.at_vertex.size(); ++v) size[v] = sizes.at_vertex[v];
   std::vector<GradedSize::Source> sources;
@@ -140,14 +141,15 @@ GradedSize grade_sizes(const QuotientTriangulation& initial,
         h = std::min(h, wanted);
       }
       for (const std::uint32_t end : {i, k}) {
-        double& least = size[static_cast<std::size_t>(tri.v[end])];
-        least = std::min(least, h);
+        double& shortest = size[static_cast<std::size_t>(tri.v[end])];
+        shortest = std::min(shortest, h);
       }
     }
   }
   for (std::size_t v = 0; v < size.size(); ++v) {
     const auto id = static_cast<VertexId>(v);
-    if (size[v] < kInfinity) add_copies(initial.point(id), id == initial.centre(), size[v]);
+    if (size[v] == kInfinity) continue;
+    add_copies(initial.point(id), id == initial.centre(), std::max(size[v], least));
   }
   return {std::move(sources), gradation};
 }

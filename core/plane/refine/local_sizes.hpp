@@ -31,9 +31,10 @@ struct LocalSizes {
                                                const std::vector<SizeRequest>& sizes);
 
 // What edges may grow from: the sizes asked for, and the shortest edge at each vertex of the initial
-// mesh, so that narrow places count.
+// mesh, so that narrow places count, but no size below `least`.
 [[nodiscard]] GradedSize grade_sizes(const QuotientTriangulation& initial,
                                      const LocalSizes& sizes,
-                                     double gradation);
+                                     double gradation,
+                                     double least);
 
 }  // namespace symcell::plane
