@@ -1,7 +1,9 @@
 #include "core/base/execution_context.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 namespace symcell {
 
@@ -35,8 +37,10 @@ void ExecutionContext::set_time_limit(double seconds) {
 Result<void> ExecutionContext::check(std::uint64_t elements) const {
   if (cancelled()) return fail(ErrorCode::kCancelled, "cancelled on request");
   if (deadline_ != Clock::time_point::max() && Clock::now() > deadline_) {
+    std::array<char, 32> seconds{};
+    std::snprintf(seconds.data(), seconds.size(), "%.6g", limit_seconds_);
     return fail(ErrorCode::kTimeLimit,
-                "time limit of " + std::to_string(limit_seconds_) + " s reached after " +
+                std::string("time limit of ") + seconds.data() + " s reached after " +
                     std::to_string(elements) +
                     " elements of the cell; raise time_limit or relax the size bounds");
   }

@@ -47,6 +47,8 @@ constexpr double kWrapOffset = 0.5;
 constexpr double kLeastWrapRel = 2e-4;
 
 const char* const kSafeHelps = "repair=safe mends it where the shape stays as it is";
+const char* const kSafeAndAllHelp =
+    "repair=safe mends it where the shape stays as it is, repair=all closes holes, too";
 const char* const kWrapHelps =
     "mend it in the CAD program and export again, or wrap the triangles by repair=wrap";
 
@@ -222,7 +224,8 @@ class Cleaner {
     if (untouched()) {
       const std::vector<OddEdge> four = branching_edges(surface());
       if (!odd.empty() || !four.empty()) {
-        result_.problem = refuse_open(surface(), odd.empty() ? four : odd, kSafeHelps);
+        result_.problem = refuse_open(surface(), odd.empty() ? four : odd,
+                                      odd.empty() ? kSafeHelps : kSafeAndAllHelp);
       }
       return {};
     }
