@@ -126,10 +126,12 @@ Result<std::optional<RefinedSolid>> CellSearch::mesh_start(Starts& starts,
   if (!best_) context_.report(Phase::kInitial, 0.08);
   auto solid = starts.next(context_);
   timings_.initial += watch.lap();
-  const bool any_size = !best_ || (rounds.most_growths > 0 &&
-                                   tuning_.rounds.is_many_bad(best_->guarded, best_->count()));
-  const std::uint64_t most = any_size ? std::numeric_limits<std::uint64_t>::max()
-                                      : limits.most_times_larger * best_->count();
+  const bool many_bad =
+      best_ && rounds.most_growths > 0 && rounds.is_many_bad(best_->guarded, best_->count());
+  const std::uint64_t most =
+      !best_ ? std::numeric_limits<std::uint64_t>::max()
+             : (many_bad ? limits.most_times_larger_if_bad : limits.most_times_larger) *
+                   best_->count();
   auto refined = solid ? refine_and_improve(std::move(*solid), options_, most, context_, rounds)
                        : error_of(solid);
   timings_.refine += watch.lap();

@@ -41,9 +41,10 @@ struct StartLimits {
   std::size_t compared_again = 2;
   std::int32_t sectors_again = 8;
   std::uint64_t cell_again = 20'000;       // larger cells are left as they are,
-  std::uint64_t mendable_again = 250'000;  // but for bad tetrahedra up to these
+  std::uint64_t mendable_again = 100'000;  // but for bad tetrahedra up to these
   // Before its improvement a mesh of a further start may be larger than the best one by this factor.
   std::uint64_t most_times_larger = 2;
+  std::uint64_t most_times_larger_if_bad = 4;  // where many tetrahedra of that one are
   // Triangles that are worked on for the sake of better or fewer tetrahedra.
   std::size_t mend_budget = 40'000;
   std::size_t start_budget = 4'000;
