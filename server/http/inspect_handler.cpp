@@ -47,7 +47,10 @@ void inspect(Call& call, ServiceContext& context) {
 }  // namespace
 
 void add_inspect_routes(Router& router, ServiceContext& context) {
-  router.add("POST", "/v1/inspect", [&context](Call& call) { inspect(call, context); });
+  // The last two for clients made from openapi.yaml, which has one form of body an operation.
+  for (const char* path : {"/v1/inspect", "/v1/inspect/file", "/v1/inspect/form"}) {
+    router.add("POST", path, [&context](Call& call) { inspect(call, context); });
+  }
 }
 
 }  // namespace symcell::server

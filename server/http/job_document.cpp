@@ -46,6 +46,15 @@ Json statistics_of(const Job& job, const JobService& jobs) {
   }
 }
 
+void add_statistics(Json& document, Json statistics) {
+  // Not there in what an earlier version wrote.
+  document["warnings"] = statistics.is_object() && statistics.contains("warnings")
+                             ? statistics["warnings"]
+                             : Json::array();
+  if (statistics.is_null()) document["damaged"] = Json::array({"statistics"});
+  document["statistics"] = std::move(statistics);
+}
+
 }  // namespace
 
 std::string job_path(const Job& job) {
@@ -86,17 +95,12 @@ Json job_document(const Job& job, JobService& jobs, JobDetail detail) {
                        {"bytes", job.model_bytes}};
   document["options"] = options_of(job);
   if (job.state == JobState::kFailed) document["error"] = Json::parse(job.error_json);
-  if (job.state == JobState::kSucceeded && detail == JobDetail::kFull) {
+  if (job.state == JobState::kSucceeded) {
     Json statistics = statistics_of(job, jobs);
     if (statistics.is_object() && statistics.contains("cell")) {
       document["progress"]["elements"] = statistics["cell"].value("elements", 0U);
     }
-    // Not there in what an earlier version wrote.
-    document["warnings"] = statistics.is_object() && statistics.contains("warnings")
-                               ? statistics["warnings"]
-                               : Json::array();
-    if (statistics.is_null()) document["damaged"] = Json::array({"statistics"});
-    document["statistics"] = std::move(statistics);
+    if (detail == JobDetail::kFull) add_statistics(document, std::move(statistics));
   }
   document["links"] = links_of(job);
   return document;

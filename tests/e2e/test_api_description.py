@@ -91,14 +91,16 @@ class ApiDescriptionTest(unittest.TestCase):
         return answers
 
     def test_every_example_of_a_job_is_accepted_and_succeeds(self):
-        for answer in self.post_examples("createJob", 202):
-            job = self.server.finished(answer.json()["id"])
-            self.assertEqual(job["state"], "succeeded", job.get("error"))
+        for operation_id in ("createJob", "createJobFromFile", "createJobFromForm"):
+            for answer in self.post_examples(operation_id, 202):
+                job = self.server.finished(answer.json()["id"])
+                self.assertEqual(job["state"], "succeeded", job.get("error"))
         self.call("createJob", body=json.dumps({"model": square()}), status=201,
                   headers={"Content-Type": "application/json", "Prefer": "wait=30"})
 
     def test_every_example_can_be_inspected(self):
-        self.post_examples("inspectModel", 200)
+        for operation_id in ("inspectModel", "inspectFile", "inspectForm"):
+            self.post_examples(operation_id, 200)
 
     def test_jobs_are_told_and_listed(self):
         self.call("getJob", self.finished["id"], status=200)
@@ -149,7 +151,8 @@ class ApiDescriptionTest(unittest.TestCase):
 
     def test_refusals_are_described(self):
         send = {"Content-Type": "application/json"}
-        for operation_id in ("createJob", "inspectModel"):
+        for operation_id in ("createJob", "inspectModel", "createJobFromFile", "inspectFile",
+                             "createJobFromForm", "inspectForm"):
             self.call(operation_id, body="{", headers=send, status=400)
             self.call(operation_id, body="x", headers={"Content-Type": "image/png"}, status=415)
         self.call("inspectModel", body=json.dumps({"model": square(), "options": {"fold": 3}}),
@@ -180,6 +183,29 @@ class ApiDescriptionTest(unittest.TestCase):
         described = set(self.description.document["components"]["schemas"]["Options"]["properties"])
         settings = set(self.finished["statistics"]["settings"])
         self.assertLessEqual(settings, described)
+        for operation_id in ("createJobFromFile", "inspectFile"):
+            parameters = [self.description.resolve(parameter)
+                          for parameter in self.operation(operation_id)[2]["parameters"]]
+            in_query = {parameter["name"] for parameter in parameters if parameter["in"] == "query"}
+            self.assertEqual(in_query, described, operation_id)
+        page = self.server.get("/docs").text()
+        for name in described:
+            self.assertIn(f"<code>{name}</code>", page)
+
+    def test_options_may_come_as_an_object_in_the_query(self):
+        body = json.dumps(square())
+        answer = self.server.request(
+            "POST", "/v1/jobs?options%5Bmax_area%5D=0.02&options%5Bfold%5D=2", body,
+            {"Content-Type": "application/octet-stream", "Prefer": "wait=30"})
+        self.assertEqual(answer.status, 201, answer.body)
+        self.assertEqual(answer.json()["options"]["max_area"], 0.02)
+        self.assertEqual(answer.json()["options"]["fold"], 2)
+
+    def test_lists_tell_the_elements_of_finished_jobs(self):
+        listed = {job["id"]: job for job in self.server.get("/v1/jobs?limit=500").json()["jobs"]}
+        for job in (self.finished, self.solid):
+            self.assertEqual(listed[job["id"]]["progress"]["elements"],
+                             job["statistics"]["cell"]["elements"])
 
     @classmethod
     def every_operation(cls):
