@@ -19,6 +19,7 @@ Json links_of(const Job& job) {
   Json links;
   links["self"] = self;
   links["model"] = self + "/model";
+  links["surface"] = self + "/surface";
   links["events"] = self + "/events";
   if (!is_finished(job.state)) links["cancel"] = self + "/cancel";
   if (job.state == JobState::kSucceeded) {

@@ -102,6 +102,24 @@ class ApiDescriptionTest(unittest.TestCase):
         for operation_id in ("inspectModel", "inspectFile", "inspectForm"):
             self.post_examples(operation_id, 200)
 
+    def test_models_are_drawn_with_what_is_known_of_them(self):
+        def extras(answer):
+            self.assertEqual(answer.body[:4], b"glTF")
+            length = int.from_bytes(answer.body[12:16], "little")
+            return json.loads(answer.body[20:20 + length])["scenes"][0]["extras"]
+
+        for job in (self.finished, self.solid):
+            drawn = extras(self.call("getSurface", job["id"], status=200))
+            self.assertEqual(drawn["inspection"]["fold"], 4)
+        self.call("getSurface", self.solid["id"], headers={"Accept": "image/png"}, status=406)
+        headers = {"Content-Type": "application/json", "Accept": "model/gltf-binary"}
+        self.assertIn("inspection", extras(self.call("inspectModel", body=json.dumps({"model": box()}),
+                                                     headers=headers, status=200)))
+        crossed = {**square(), "segments": [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2], [1, 3]]}
+        drawn = self.call("inspectModel", body=json.dumps({"model": crossed}), headers=headers, status=200)
+        self.assertEqual(extras(drawn)["problem"]["code"], "self_intersection")
+        self.assertIn(b'"at fault"', drawn.body)
+
     def test_jobs_are_told_and_listed(self):
         self.call("getJob", self.finished["id"], status=200)
         self.call("listJobs", query="?state=succeeded&limit=10", status=200)
@@ -160,7 +178,7 @@ class ApiDescriptionTest(unittest.TestCase):
 
     def test_pages_and_probes_answer(self):
         for operation_id in ("getHealth", "getReadiness", "getMetrics", "getDescription", "getDocs",
-                             "getIndex"):
+                             "getPlainDocs", "getIndex"):
             self.call(operation_id, status=200)
         self.call("getProblemType", "not_symmetric", status=200)
         self.call("getProblemType", "no_such_problem", status=404)
@@ -175,7 +193,7 @@ class ApiDescriptionTest(unittest.TestCase):
             self.assertEqual(list(self.description.faults(example["value"], schema)), [], name)
 
     def test_the_page_knows_every_operation(self):
-        page = self.server.get("/docs").text()
+        page = self.server.get("/docs/plain").text()
         for method, path, _ in self.description.operations():
             self.assertIn(f"<code>{method} {path}</code>", page)
 
@@ -188,7 +206,7 @@ class ApiDescriptionTest(unittest.TestCase):
                           for parameter in self.operation(operation_id)[2]["parameters"]]
             in_query = {parameter["name"] for parameter in parameters if parameter["in"] == "query"}
             self.assertEqual(in_query, described, operation_id)
-        page = self.server.get("/docs").text()
+        page = self.server.get("/docs/plain").text()
         for name in described:
             self.assertIn(f"<code>{name}</code>", page)
 
