@@ -91,8 +91,9 @@ export class Cell {
 
   private countQuality(): Histogram {
     const solid = this.mesh.dimension === 3;
-    const binWidth = 5;
-    const counts = new Array<number>(solid ? 15 : 12).fill(0);
+    // Up to the regular element's 70.5 and 60 degrees, in bars that a finger meets.
+    const binWidth = solid ? 8 : 6;
+    const counts = new Array<number>(solid ? 9 : 10).fill(0);
     for (const value of this.quality) ++counts[Math.min(Math.floor(value / binWidth), counts.length - 1)]!;
     return { label: solid ? 'Smallest dihedral angle' : 'Smallest angle', unit: '°', binWidth, counts };
   }

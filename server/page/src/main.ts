@@ -562,7 +562,7 @@ function showHistogram(cell: Cell): void {
       setCopies(1);
       select(chosen, `${count} elements from ${from} to ${from + binWidth} degrees`, bar);
     }, { 'aria-pressed': 'false', 'aria-label': `${from} to ${from + binWidth} degrees: ${count} elements`, title: `${from}–${from + binWidth}°: ${figure(count)}`, disabled: count === 0 });
-    bar.append(stem, h('span', { class: 'tick' }, i % 3 === 0 ? String(from) : ''));
+    bar.append(stem, h('span', { class: 'tick' }, i % 2 === 0 ? String(from) : ''));
     return bar;
   }));
 }

@@ -20,6 +20,9 @@ export interface Frame { fold: number; axis: { origin: number[]; direction: numb
 
 // More triangles than this in all copies together, and the copies that go beyond are left out.
 const mostTriangles = 24_000_000;
+// Triangles a frame: more are drawn over several frames, so that turning never waits for all of them.
+const budgetOfCard = 4_000_000;
+const budgetOfProcessor = 40_000;
 const sharpEdgeDegrees = 28;
 const mostTrianglesWithEdges = 150_000;
 
@@ -34,6 +37,7 @@ export class Viewer {
   private readonly materials: SurfaceMaterial[] = [];
   private readonly lineMaterials: LineMaterial[] = [];
   private cell: Cell | null = null;
+  private binColours: Colour[] = [];
   private centres: Float32Array = new Float32Array();
   private copies: THREE.InstancedMesh | null = null;
   private main: SurfaceMaterial | null = null;
@@ -50,13 +54,17 @@ export class Viewer {
   private cellSphere = new THREE.Sphere();
   private modelSphere = new THREE.Sphere();
   private wanted = false;
+  private part = 0;
+  private readonly budget: number;
   private flight = 0;
-  /** Milliseconds of the last frame, as far as the processor was at it. */
-  frameMs = 0;
   frames = 0;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: false });
+    const software = drawsInSoftware();
+    this.budget = software ? budgetOfProcessor : budgetOfCard;
+    // Kept from frame to frame: parts of a large mesh are drawn one after the other.
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !software, alpha: true, preserveDrawingBuffer: true });
+    this.renderer.autoClear = false;
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;  // colours are handed over as they are seen
     this.scene.add(this.model, this.mesh, this.marks);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -243,7 +251,7 @@ export class Viewer {
 
   /** A small picture of what is seen now. */
   thumbnail(): string {
-    this.render();
+    if (this.wanted) this.render();
     const small = document.createElement('canvas');
     small.width = 160;
     small.height = 120;
@@ -254,16 +262,21 @@ export class Viewer {
     return small.toDataURL('image/webp', 0.8);
   }
 
-  /** Frames a second while the model is turned once; for measuring. */
+  /** Resolves when all parts of the picture are drawn. */
+  async settled(): Promise<void> {
+    do await new Promise(requestAnimationFrame);
+    while (this.wanted || this.part > 0);
+  }
+
+  /** Frames a second while the view is turned; for measuring. */
   async measure(frames = 60): Promise<number> {
     const gl = this.renderer.getContext();
     const pixel = new Uint8Array(4);
     const begin = performance.now();
     for (let i = 0; i < frames; ++i) {
       this.turn(360 / frames, 0);
-      this.render();
+      await new Promise(requestAnimationFrame);
       gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);  // waits for the picture
-      if (i % 10 === 9) await new Promise(requestAnimationFrame);
     }
     return (1000 * frames) / (performance.now() - begin);
   }
@@ -363,9 +376,7 @@ export class Viewer {
 
   private colourOf(face: number, element: number): Colour {
     const cell = this.cell!;
-    if (this.colouring === 'quality') {
-      return qualityColour((cell.bin(element) + 0.5) / (cell.histogram.counts.length - 1));
-    }
+    if (this.colouring === 'quality') return this.binColours[cell.bin(element)]!;
     const kind = cell.kind[face]!;
     if (this.colouring === 'groups' && cell.mesh.dimension === 3) {
       if (kind === kLower) return lowerColour;
@@ -382,6 +393,8 @@ export class Viewer {
   private rebuild(): void {
     const cell = this.cell;
     if (!cell) return;
+    const last = cell.histogram.counts.length - 1;
+    this.binColours = cell.histogram.counts.map((_, bin) => qualityColour((bin + 0.5) / last));
     const kept = this.kept();
     const solid = cell.mesh.dimension === 3;
     const shown: number[] = [];
@@ -394,18 +407,23 @@ export class Viewer {
     const positions = new Float32Array(9 * shown.length);
     const colours = new Uint8Array(9 * shown.length);
     const nodes = cell.mesh.nodes;
-    shown.forEach((f, i) => {
+    // In an order that goes all over the mesh: its first part alone gives an impression of the whole.
+    const stride = coprimeNear(shown.length * 0.618, shown.length);
+    for (let i = 0, at = 0; i < shown.length; ++i, at = (at + stride) % shown.length) {
+      const f = shown[at]!;
       const element = kept && kept[cell.inside[f]!] === 0 ? cell.outside[f]! : cell.inside[f]!;
       const colour = this.colourOf(f, element);
       for (let c = 0; c < 3; ++c) {
         const node = 3 * cell.faces[3 * f + c]!;
-        const at = 9 * i + 3 * c;
-        positions[at] = nodes[node]!;
-        positions[at + 1] = nodes[node + 1]!;
-        positions[at + 2] = nodes[node + 2]!;
-        colours.set(colour, at);
+        const to = 9 * i + 3 * c;
+        positions[to] = nodes[node]!;
+        positions[to + 1] = nodes[node + 1]!;
+        positions[to + 2] = nodes[node + 2]!;
+        colours[to] = colour[0];
+        colours[to + 1] = colour[1];
+        colours[to + 2] = colour[2];
       }
-    });
+    }
     clear(this.mesh);
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
@@ -506,18 +524,33 @@ export class Viewer {
   }
 
   draw(): void {
+    this.part = 0;
     if (this.wanted) return;
     this.wanted = true;
     requestAnimationFrame(() => this.render());
   }
 
+  // One part of the picture; the next frame draws the next one.
   private render(): void {
     this.wanted = false;
-    const begin = performance.now();
+    const geometry = this.mesh.visible ? this.copies?.geometry : undefined;
+    const triangles = geometry ? geometry.getAttribute('position').count / 3 : 0;
+    const each = Math.max(1, Math.floor(this.budget / Math.max(this.copies?.count ?? 1, 1)));
+    const parts = Math.max(1, Math.ceil(triangles / each));
+    geometry?.setDrawRange(3 * this.part * each, 3 * each);
+    // Lines and marks come with the first part, to be seen while turning, and again on top of all.
+    const extras = [this.marks, this.picked, this.copyLines].filter((object) => object !== null);
+    const shown = extras.map((object) => object.visible);
+    if (this.part > 0 && this.part + 1 < parts) for (const object of extras) object.visible = false;
+    if (this.part === 0) this.renderer.clear();
     this.renderer.render(this.scene, this.camera);
-    this.frameMs = performance.now() - begin;
+    extras.forEach((object, i) => { object.visible = shown[i]!; });
     ++this.frames;
     this.canvas.dataset.frames = String(this.frames);
+    this.part = this.part + 1 < parts ? this.part + 1 : 0;
+    if (this.part === 0) return;
+    this.wanted = true;
+    requestAnimationFrame(() => this.render());
   }
 
   private resize(): void {
@@ -578,6 +611,24 @@ export class Viewer {
     };
     step();
   }
+}
+
+// Whether there is no graphics card, or none that the browser trusts.
+function drawsInSoftware(): boolean {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  if (!gl) return false;
+  const names = gl.getExtension('WEBGL_debug_renderer_info');
+  const name = String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
+/** A number near `wanted` that has no divisor with `count` in common. */
+function coprimeNear(wanted: number, count: number): number {
+  const divisor = (a: number, b: number): number => (b === 0 ? a : divisor(b, a % b));
+  let stride = Math.max(1, Math.floor(wanted));
+  while (divisor(stride, count) > 1) ++stride;
+  return stride;
 }
 
 function isDark(): boolean {
