@@ -4,7 +4,7 @@
 import * as THREE from 'three';
 
 const vertexShader = /* glsl */ `
-  attribute vec3 tint;
+  attribute vec4 tint;
   uniform float uShift;
   uniform float uAlternate;
   varying vec3 vTint;
@@ -18,7 +18,7 @@ const vertexShader = /* glsl */ `
     #endif
     vec4 world = modelMatrix * place;
     vec4 seen = viewMatrix * world;
-    vTint = tint;
+    vTint = tint.rgb;
     #ifdef USE_INSTANCING
       // Neighbouring copies are told apart by a shade.
       if (uAlternate > 0.0 && gl_InstanceID % 2 == 1) vTint *= 1.0 - uAlternate;

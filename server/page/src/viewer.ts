@@ -22,7 +22,7 @@ export interface Frame { fold: number; axis: { origin: number[]; direction: numb
 const mostTriangles = 24_000_000;
 // Triangles a frame: more are drawn over several frames, so that turning never waits for all of them.
 const budgetOfCard = 4_000_000;
-const budgetOfProcessor = 40_000;
+const budgetOfProcessor = 20_000;
 const sharpEdgeDegrees = 28;
 const mostTrianglesWithEdges = 150_000;
 
@@ -405,7 +405,8 @@ export class Viewer {
       if (first !== second || (solid && cell.kind[f]! !== kInner && (first || second) && b < 0)) shown.push(f);
     }
     const positions = new Float32Array(9 * shown.length);
-    const colours = new Uint8Array(9 * shown.length);
+    // Four bytes a corner: three are turned into four by some drivers, at every draw.
+    const colours = new Uint8Array(12 * shown.length);
     const nodes = cell.mesh.nodes;
     // In an order that goes all over the mesh: its first part alone gives an impression of the whole.
     const stride = coprimeNear(shown.length * 0.618, shown.length);
@@ -419,15 +420,13 @@ export class Viewer {
         positions[to] = nodes[node]!;
         positions[to + 1] = nodes[node + 1]!;
         positions[to + 2] = nodes[node + 2]!;
-        colours[to] = colour[0];
-        colours[to + 1] = colour[1];
-        colours[to + 2] = colour[2];
+        colours.set(colour, 12 * i + 4 * c);
       }
     }
     clear(this.mesh);
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
-    geometry.setAttribute('tint', new THREE.BufferAttribute(colours, 3, true));
+    geometry.setAttribute('tint', new THREE.BufferAttribute(colours, 4, true));
     this.main = this.surfaceMaterial();
     this.copies = new THREE.InstancedMesh(geometry, this.main as unknown as THREE.Material, Math.max(1, this.frame.fold));
     this.copies.frustumCulled = false;
@@ -646,9 +645,9 @@ function clear(group: THREE.Group): void {
 
 function tint(geometry: THREE.BufferGeometry, colour: Colour): void {
   const count = geometry.getAttribute('position').count;
-  const colours = new Uint8Array(3 * count);
-  for (let i = 0; i < count; ++i) colours.set(colour, 3 * i);
-  geometry.setAttribute('tint', new THREE.BufferAttribute(colours, 3, true));
+  const colours = new Uint8Array(4 * count);
+  for (let i = 0; i < count; ++i) colours.set(colour, 4 * i);
+  geometry.setAttribute('tint', new THREE.BufferAttribute(colours, 4, true));
 }
 
 function surface(positions: Float32Array, colour: Colour): THREE.BufferGeometry {
