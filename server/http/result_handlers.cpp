@@ -159,7 +159,7 @@ std::optional<WriteOptions> write_options_of(Call& call) {
                     "encoding (of vtu and vtp; ascii also of stl) is one of raw, zlib, ascii");
     return std::nullopt;
   }
-  if (call.request.has_param("packed")) {
+  if (call.has_parameter("packed")) {
     const auto packed = packed_reals_from_name(call.parameter("packed"));
     if (!packed) {
       respond_problem(call, ServiceProblem::kBadRequest,

@@ -95,6 +95,7 @@ Result<void> LocalEngine::draw(const std::filesystem::path& path,
   std::vector<std::int64_t> at_fault;
   if (const auto inspection = inspect_model(*model, options, context)) {
     extras["inspection"] = inspection_to_json(*inspection);
+    if (const auto* solid = std::get_if<SolidInspection>(&*inspection)) at_fault = solid->at_fault;
   } else {
     const Error& error = inspection.error();
     extras["problem"] = {{"code", error_code_name(error.code)}, {"detail", error.message}};

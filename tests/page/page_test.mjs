@@ -151,6 +151,7 @@ test('what is wrong with a file is said, and a button mends it', async () => {
   open_.writeUInt32LE(count, 80);
   await drop(page, open_.subarray(0, 84 + 50 * count), 'open.stl');
   await page.locator('.problem').getByRole('button', { name: 'Repair it' }).waitFor();
+  await page.locator('#legend').getByText('at fault').waitFor();
   await picture(page, 'problem');
   await assertAccessible(page, 'problem');
   await page.getByRole('button', { name: 'Repair it' }).click();

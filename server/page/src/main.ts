@@ -263,13 +263,28 @@ function capital(text: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
+const mostCharacters = 220;
+
+/** The beginning of what may list dozens of places, and whether that is not all. */
+function shortened(text: string): [string, boolean] {
+  if (text.length <= mostCharacters) return [text, false];
+  const colon = text.indexOf(': ');
+  if (colon > 20 && colon < mostCharacters) {
+    const list = text.indexOf('; ', colon);
+    if (list > 0 && list < mostCharacters) return [`${text.slice(0, list)}, and more …`, true];
+  }
+  return [`${text.slice(0, text.lastIndexOf(' ', mostCharacters))} …`, true];
+}
+
 function showProblem(problem: Problem | null): void {
   if (!problem) {
     $('problem').replaceChildren();
     return;
   }
-  $('problem').replaceChildren(h('div', { class: 'problem' }, h('h2', {}, problem.title ?? 'This does not work yet'),
-    h('p', {}, capital(problem.detail), problem.detail.endsWith('.') ? '' : '.'), mendButtons(mendsOf(problem))));
+  const [first, rest] = shortened(problem.detail);
+  $('problem').replaceChildren(h('div', { class: 'problem' }, h('h2', {}, problem.title ?? 'This cannot be meshed yet'),
+    h('p', {}, capital(first), /[.…]$/.test(first) ? '' : '.'), mendButtons(mendsOf(problem)),
+    rest ? h('details', {}, h('summary', {}, 'All of it'), h('p', {}, capital(problem.detail))) : null));
   $('problem').scrollIntoView({ block: 'nearest' });
 }
 
