@@ -17,7 +17,7 @@ struct FormatName {
 };
 
 // In the order of preference where a client accepts several alike.
-constexpr std::array<FormatName, 10> kFormats{{
+constexpr std::array<FormatName, 11> kFormats{{
     {MeshFormat::kVtu, "vtu", "application/vnd.vtk.vtu+xml", 0},
     {MeshFormat::kJson, "json", "application/json", 0},
     {MeshFormat::kMsh, "msh", "model/x-gmsh", 0},
@@ -26,6 +26,7 @@ constexpr std::array<FormatName, 10> kFormats{{
     {MeshFormat::kBdf, "bdf", "model/x-nastran", 0},
     {MeshFormat::kCdb, "cdb", "model/x-ansys", 0},
     {MeshFormat::kVtp, "vtp", "application/vnd.vtk.vtp+xml", 0},
+    {MeshFormat::kGlb, "glb", "model/gltf-binary", 0},
     {MeshFormat::kSvg, "svg", "image/svg+xml", 2},
     {MeshFormat::kStl, "stl", "model/stl", 3},
 }};

@@ -9,6 +9,9 @@ namespace symcell::internal {
 // JSON as the interface has it.
 void write_json_mesh(MeshStream& mesh, ByteWriter& out);
 
+// The same with arrays in base64.  Requires: `reals` is not kNone.
+void write_packed_json(MeshStream& mesh, PackedReals reals, ByteWriter& out);
+
 // VTK XML UnstructuredGrid; types 5 and 22 (10 and 24 for solids).
 void write_vtu(MeshStream& mesh, VtuEncoding encoding, ByteWriter& out);
 
@@ -22,6 +25,10 @@ void write_msh2(MeshStream& mesh, ByteWriter& out);
 // VTK XML PolyData: the facets of the model and, of a cell, of both bounds, with `marker` and `side`
 // (0 outside, 1 lower bound, 2 higher bound, 3 within the material).  Errors: kInternal.
 [[nodiscard]] Result<void> write_vtp(MeshStream& mesh, VtuEncoding encoding, ByteWriter& out);
+
+// Binary glTF: surface or triangles by group, bounds red and blue, edges as lines; the full mesh as a
+// node a sector.  Errors: kTooLarge (4 GiB).
+[[nodiscard]] Result<void> write_glb(const MeshStream& mesh, ByteWriter& out);
 
 // A picture of a planar mesh: edges thin, model segments dark, lower bound red, higher bound blue;
 // the full mesh as rotated copies of the cell, which is picked out in colour.

@@ -45,7 +45,19 @@ Result<void> write_deck(MeshStream& mesh,
   return {};
 }
 
+void write_json(MeshStream& mesh, PackedReals packed, ByteWriter& out) {
+  if (packed == PackedReals::kNone) return internal::write_json_mesh(mesh, out);
+  internal::write_packed_json(mesh, packed, out);
+}
+
 }  // namespace
+
+std::optional<PackedReals> packed_reals_from_name(std::string_view name) {
+  if (name == "false") return PackedReals::kNone;
+  if (name == "true") return PackedReals::kFloat32;
+  if (name == "exact") return PackedReals::kFloat64;
+  return std::nullopt;
+}
 
 bool takes_deck_options(MeshFormat format) {
   return format == MeshFormat::kInp || format == MeshFormat::kBdf || format == MeshFormat::kCdb;
@@ -96,7 +108,7 @@ Result<void> write_mesh(const SymmetryCellMesh& cell,
   MeshStream mesh(cell, part);
   mesh.stop_when([&out] { return !out.ok(); });
   switch (format) {
-    case MeshFormat::kJson: internal::write_json_mesh(mesh, out); break;
+    case MeshFormat::kJson: write_json(mesh, options.packed, out); break;
     case MeshFormat::kVtu: internal::write_vtu(mesh, options.vtu_encoding, out); break;
     case MeshFormat::kMsh: internal::write_msh(mesh, out); break;
     case MeshFormat::kMsh2: internal::write_msh2(mesh, out); break;
@@ -104,6 +116,7 @@ Result<void> write_mesh(const SymmetryCellMesh& cell,
     case MeshFormat::kBdf:
     case MeshFormat::kCdb: done = write_deck(mesh, format, options.deck, out); break;
     case MeshFormat::kVtp: done = internal::write_vtp(mesh, options.vtu_encoding, out); break;
+    case MeshFormat::kGlb: done = internal::write_glb(mesh, out); break;
     case MeshFormat::kSvg: internal::write_svg(mesh, out); break;
     case MeshFormat::kStl: done = internal::write_stl(mesh, options.stl_ascii, out); break;
   }

@@ -23,6 +23,7 @@ enum class MeshFormat : std::uint8_t {
   kBdf,
   kCdb,
   kVtp,
+  kGlb,
   kSvg,
   kStl
 };
@@ -30,10 +31,16 @@ enum class MeshPart : std::uint8_t { kCell, kFull };
 
 enum class VtuEncoding : std::uint8_t { kAppendedRaw, kAppendedZlib, kAscii };
 
+// Of JSON: numbers as text, or arrays in base64 whose coordinates have so many bits.
+enum class PackedReals : std::uint8_t { kNone, kFloat32, kFloat64 };
+// "false", "true" (32 bits), "exact" (64).
+[[nodiscard]] std::optional<PackedReals> packed_reals_from_name(std::string_view name);
+
 struct WriteOptions {
   VtuEncoding vtu_encoding = VtuEncoding::kAppendedRaw;
   bool stl_ascii = false;
   DeckOptions deck = {};
+  PackedReals packed = PackedReals::kNone;
 };
 
 // "vtu, json, msh, ... or stl", for messages.

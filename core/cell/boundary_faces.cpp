@@ -28,7 +28,7 @@ class FaceFinder {
       begin = end;
     }
     for (std::size_t h = 0; h < kind.size(); ++h) {
-      if (kind[h] != kInner) result.push_back({corners(h), kind[h] == kOuter});
+      if (kind[h] != kInner) result.push_back({corners(h), kind[h] == kOuter, h / 4, h % 4});
     }
     return result;
   }

@@ -12,6 +12,8 @@ namespace symcell {
 struct BoundaryFace {
   std::array<std::int32_t, 3> corners{};  // cell nodes, counter-clockwise seen from outside
   bool outer = true;                      // false: on a symmetry bound, inside the full mesh
+  std::size_t element = 0;                // of the cell, the one that has the face
+  std::size_t opposite = 0;               // its corner that is not on the face
 };
 
 // All faces that one element of the cell has, in the order of the elements. Whether a face is

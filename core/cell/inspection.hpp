@@ -69,6 +69,8 @@ struct SolidInspection {
   std::vector<Warning> warnings;
   // Not empty: why a mesh of this model would be refused (open, self-intersecting, ambiguous).
   std::string problem;
+  // Of surfaces that are refused: the faces that the problem names, in input numbering.
+  std::vector<std::int64_t> at_fault;
 };
 
 using Inspection = std::variant<PslgInspection, SolidInspection>;

@@ -27,7 +27,7 @@ namespace {
 constexpr const char* kExamples =
     R"(Formats, from the ending or --format: vtu (ParaView), json, msh (Gmsh 4.1 with the periodic
 bounds), msh2 (Gmsh 2.2), decks: inp (CalculiX, Abaqus), bdf (Nastran), cdb (ANSYS); vtp (the
-boundary with its groups), svg (a picture, planar models), stl (the boundary, solids). Lengths, areas and volumes are in the model's own units, angles in degrees.
+boundary with its groups), glb (binary glTF, to be looked at), svg (a picture, planar models), stl (the boundary, solids). Lengths, areas and volumes are in the model's own units, angles in degrees.
 
 Examples:
   symcell mesh gear.json --cell cell.vtu --full full.vtu --stats stats.json
@@ -48,6 +48,7 @@ struct MeshArguments {
   std::string stats;
   std::string format;
   std::string encoding = "raw";
+  std::string packed = "false";
   std::vector<std::pair<std::string, std::string>> deck;
   bool json_errors = false;
   bool quiet = false;
@@ -75,6 +76,12 @@ Result<WriteOptions> write_options(const MeshArguments& arguments) {
   for (const auto& [name, value] : arguments.deck) {
     SYMCELL_TRY(set_deck_option(options.deck, name, value));
   }
+  const auto packed = packed_reals_from_name(arguments.packed);
+  if (!packed) {
+    return fail(ErrorCode::kBadOption,
+                "--packed must be true, exact or false, not " + arguments.packed);
+  }
+  options.packed = *packed;
   const std::string& encoding = arguments.encoding;
   if (encoding == "zlib") options.vtu_encoding = VtuEncoding::kAppendedZlib;
   if (encoding == "ascii") {
@@ -276,6 +283,9 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
       "NAME");
   add("--encoding,--vtu-encoding", arguments->encoding,
       "of VTU and VTP files [raw]; of STL ascii or not", "raw|zlib|ascii");
+  add("--packed", arguments->packed,
+      "of JSON files: arrays in base64, coordinates in 32 bits (true) or 64 (exact) [false]",
+      "true|exact|false");
   for (const DeckOptionInfo& info : deck_option_table()) {
     const std::string name(info.name);
     std::string help(info.help);

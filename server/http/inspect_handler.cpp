@@ -3,15 +3,13 @@
 
 #include "server/http/call.hpp"
 #include "server/http/model_request.hpp"
+#include "server/http/picture.hpp"
 #include "server/http/problem_response.hpp"
 #include "server/http/router.hpp"
 #include "server/http/service_context.hpp"
 
 namespace symcell::server {
 namespace {
-
-constexpr std::size_t kMaxInspectBytes = 64UL << 20U;
-constexpr double kMaxInspectSeconds = 30;
 
 void inspect(Call& call, ServiceContext& context) {
   if (context.jobs.stopping()) {
@@ -22,6 +20,10 @@ void inspect(Call& call, ServiceContext& context) {
   const auto request =
       receive_model_request(call, context, std::min(kMaxInspectBytes, context.max_body_bytes));
   if (!request) return;
+  if (wants_picture(call)) {
+    respond_picture(call, context, request->model.path(), request->format, request->options);
+    return;
+  }
   // An inspection holds the HTTP thread and a worker process; the places keep threads and
   // processors for others. Not taken before the body is here: slow senders would hold them all.
   const Slots::Slot place = context.inspections.try_take();
@@ -47,7 +49,10 @@ void inspect(Call& call, ServiceContext& context) {
 }  // namespace
 
 void add_inspect_routes(Router& router, ServiceContext& context) {
-  router.add("POST", "/v1/inspect", [&context](Call& call) { inspect(call, context); });
+  // The last two for clients made from openapi.yaml, which has one form of body an operation.
+  for (const char* path : {"/v1/inspect", "/v1/inspect/file", "/v1/inspect/form"}) {
+    router.add("POST", path, [&context](Call& call) { inspect(call, context); });
+  }
 }
 
 }  // namespace symcell::server

@@ -19,6 +19,7 @@ Json links_of(const Job& job) {
   Json links;
   links["self"] = self;
   links["model"] = self + "/model";
+  links["surface"] = self + "/surface";
   links["events"] = self + "/events";
   if (!is_finished(job.state)) links["cancel"] = self + "/cancel";
   if (job.state == JobState::kSucceeded) {
@@ -44,6 +45,15 @@ Json statistics_of(const Job& job, const JobService& jobs) {
   } catch (const StoredFileDamaged&) {
     return nullptr;
   }
+}
+
+void add_statistics(Json& document, Json statistics) {
+  // Not there in what an earlier version wrote.
+  document["warnings"] = statistics.is_object() && statistics.contains("warnings")
+                             ? statistics["warnings"]
+                             : Json::array();
+  if (statistics.is_null()) document["damaged"] = Json::array({"statistics"});
+  document["statistics"] = std::move(statistics);
 }
 
 }  // namespace
@@ -86,17 +96,12 @@ Json job_document(const Job& job, JobService& jobs, JobDetail detail) {
                        {"bytes", job.model_bytes}};
   document["options"] = options_of(job);
   if (job.state == JobState::kFailed) document["error"] = Json::parse(job.error_json);
-  if (job.state == JobState::kSucceeded && detail == JobDetail::kFull) {
+  if (job.state == JobState::kSucceeded) {
     Json statistics = statistics_of(job, jobs);
     if (statistics.is_object() && statistics.contains("cell")) {
       document["progress"]["elements"] = statistics["cell"].value("elements", 0U);
     }
-    // Not there in what an earlier version wrote.
-    document["warnings"] = statistics.is_object() && statistics.contains("warnings")
-                               ? statistics["warnings"]
-                               : Json::array();
-    if (statistics.is_null()) document["damaged"] = Json::array({"statistics"});
-    document["statistics"] = std::move(statistics);
+    if (detail == JobDetail::kFull) add_statistics(document, std::move(statistics));
   }
   document["links"] = links_of(job);
   return document;

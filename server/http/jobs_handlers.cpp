@@ -174,7 +174,10 @@ void delete_job(Call& call, ServiceContext& context) {
 }  // namespace
 
 void add_job_routes(Router& router, ServiceContext& context) {
-  router.add("POST", "/v1/jobs", [&context](Call& call) { submit_job(call, context); });
+  // The last two for clients made from openapi.yaml, which has one form of body an operation.
+  for (const char* path : {"/v1/jobs", "/v1/jobs/file", "/v1/jobs/form"}) {
+    router.add("POST", path, [&context](Call& call) { submit_job(call, context); });
+  }
   router.add("GET", "/v1/jobs", [&context](Call& call) { list_jobs(call, context); });
   router.add("GET", "/v1/jobs/{id}", [&context](Call& call) { show_job(call, context); });
   router.add("DELETE", "/v1/jobs/{id}", [&context](Call& call) { delete_job(call, context); });

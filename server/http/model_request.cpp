@@ -58,10 +58,20 @@ Result<MeshOptions> parse_options_text(std::string_view text) {
   return options_from_json(json);
 }
 
+// "options[max_area]", as clients write an object in a query (style deepObject), is max_area.
+std::string option_name(const std::string& parameter) {
+  constexpr std::string_view kObject = "options[";
+  if (!parameter.starts_with(kObject) || !parameter.ends_with(']')) return parameter;
+  return parameter.substr(kObject.size(), parameter.size() - kObject.size() - 1);
+}
+
 // From the document, if it has options, else from the query; both at once would leave open which
 // one wins.
 Result<MeshOptions> parse_options(const Call& call, std::optional<std::string_view> document) {
-  std::vector<std::pair<std::string, std::string>> texts(call.query.begin(), call.query.end());
+  std::vector<std::pair<std::string, std::string>> texts;
+  for (const auto& [name, text] : call.query) {
+    texts.emplace_back(option_name(name), text);
+  }
   if (!document) return options_from_texts(texts);
   if (!texts.empty()) {
     return fail(ErrorCode::kBadOption,

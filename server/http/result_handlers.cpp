@@ -1,16 +1,19 @@
 // GET /v1/jobs/{id}/cell, /full, /statistics, /model: streamed, never whole in memory.
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "api/formats/mesh_writer.hpp"
+#include "api/schema/options.hpp"
 #include "api/version.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identifiers.hpp"
 #include "server/http/call.hpp"
 #include "server/http/gzip.hpp"
 #include "server/http/header_values.hpp"
+#include "server/http/picture.hpp"
 #include "server/http/problem_response.hpp"
 #include "server/http/router.hpp"
 #include "server/http/service_context.hpp"
@@ -136,6 +139,7 @@ std::optional<MeshFormat> mesh_format_of(Call& call, std::int32_t dimension) {
   if (!format) {
     respond_problem(call, ServiceProblem::kNotAcceptable,
                     "meshes come as application/vnd.vtk.vtu+xml, application/json, model/x-gmsh, "
+                    "model/gltf-binary, "
                     "planar ones as image/svg+xml, solids as model/stl; or choose by ?format=" +
                         mesh_format_list());
   }
@@ -155,6 +159,15 @@ std::optional<WriteOptions> write_options_of(Call& call) {
                     "encoding (of vtu and vtp; ascii also of stl) is one of raw, zlib, ascii");
     return std::nullopt;
   }
+  if (call.has_parameter("packed")) {
+    const auto packed = packed_reals_from_name(call.parameter("packed"));
+    if (!packed) {
+      respond_problem(call, ServiceProblem::kBadRequest,
+                      "packed (of json) is one of true, exact, false");
+      return std::nullopt;
+    }
+    options.packed = *packed;
+  }
   for (const DeckOptionInfo& info : deck_option_table()) {
     const std::string name(info.name);
     if (!call.has_parameter(name)) continue;
@@ -172,6 +185,7 @@ std::string variant_of(Call& call, MeshFormat format) {
   if (format == MeshFormat::kVtu || format == MeshFormat::kVtp || format == MeshFormat::kStl) {
     return call.parameter("encoding");
   }
+  if (format == MeshFormat::kJson) return call.parameter("packed");
   std::string texts;
   for (const DeckOptionInfo& info : deck_option_table()) {
     const std::string name(info.name);
@@ -267,6 +281,25 @@ void send_model(Call& call, ServiceContext& context) {
                           file_producer(context.jobs.files().model(job->id))});
 }
 
+// The model as a picture, whatever became of the job.
+void send_surface(Call& call, ServiceContext& context) {
+  const auto job = context.jobs.find(call.id);
+  if (!job) {
+    respond_problem(call, ServiceProblem::kNotFound, "there is no such job; it may have expired");
+    return;
+  }
+  if (!check_accepts(call, "model/gltf-binary")) return;
+  if (static_cast<std::size_t>(job->model_bytes) > kMaxInspectBytes) {
+    respond_problem(call, ServiceProblem::kBodyTooLarge,
+                    "models above 64 MiB are not drawn; fetch the cell or the model");
+    return;
+  }
+  check_model(*job, context.jobs.files());
+  const auto options = options_from_json(nlohmann::json::parse(job->options_json));
+  respond_picture(call, context, context.jobs.files().model(job->id), job->model_format,
+                  options ? *options : MeshOptions{});
+}
+
 }  // namespace
 
 void add_result_routes(Router& router, ServiceContext& context) {
@@ -276,6 +309,8 @@ void add_result_routes(Router& router, ServiceContext& context) {
              [&context](Call& call) { send_mesh(call, context, MeshPart::kFull); });
   router.add("GET", "/v1/jobs/{id}/statistics",
              [&context](Call& call) { send_statistics(call, context); });
+  router.add("GET", "/v1/jobs/{id}/surface",
+             [&context](Call& call) { send_surface(call, context); });
   router.add("GET", "/v1/jobs/{id}/model", [&context](Call& call) { send_model(call, context); });
 }
 

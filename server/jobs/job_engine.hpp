@@ -51,6 +51,15 @@ class JobEngine {
                                                     const MeshOptions& options,
                                                     ExecutionContext& context) = 0;
 
+  // Draws a model as binary glTF (api/formats/model_glb.hpp) to the file `picture`. The scene's extras hold
+  // `inspection`, or `problem` with the code and the message of why there is none.  Errors: those of
+  // reading, and limits.
+  [[nodiscard]] virtual Result<void> draw(const std::filesystem::path& model,
+                                          ModelFormat format,
+                                          const MeshOptions& options,
+                                          const std::filesystem::path& picture,
+                                          ExecutionContext& context) = 0;
+
   // Why it can run nothing at present; empty if it can.
   [[nodiscard]] virtual std::string fault() const { return {}; }
   // Its own figures in the text format of Prometheus.

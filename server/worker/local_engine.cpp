@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/formats/cell_archive.hpp"
+#include "api/formats/model_glb.hpp"
 #include "api/schema/statistics_json.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/mesh_model.hpp"
@@ -20,6 +21,19 @@ Result<void> write_cell(const SymmetryCellMesh& mesh, const std::filesystem::pat
   });
   if (written) file.keep();
   return written;
+}
+
+// Whether an error's elements are facets, triangles or segments of the model.
+bool names_faces(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::kSelfIntersection:
+    case ErrorCode::kOverlappingSegments:
+    case ErrorCode::kZeroLengthSegment:
+    case ErrorCode::kDegenerateFacet:
+    case ErrorCode::kNonplanarFacet:
+    case ErrorCode::kNotWatertight: return true;
+    default: return false;
+  }
 }
 
 }  // namespace
@@ -68,6 +82,33 @@ Result<std::string> LocalEngine::inspect(const std::filesystem::path& path,
   const auto inspection = inspect_model(*model, options, context);
   if (!inspection) return error_of(inspection);
   return inspection_to_json(*inspection).dump(2) + "\n";
+}
+
+Result<void> LocalEngine::draw(const std::filesystem::path& path,
+                               ModelFormat format,
+                               const MeshOptions& options,
+                               const std::filesystem::path& picture,
+                               ExecutionContext& context) {
+  const auto model = read_model(MappedFile(path, Links::kRefuse).bytes(), format);
+  if (!model) return error_of(model);
+  nlohmann::ordered_json extras;
+  std::vector<std::int64_t> at_fault;
+  if (const auto inspection = inspect_model(*model, options, context)) {
+    extras["inspection"] = inspection_to_json(*inspection);
+    if (const auto* solid = std::get_if<SolidInspection>(&*inspection)) at_fault = solid->at_fault;
+  } else {
+    const Error& error = inspection.error();
+    extras["problem"] = {{"code", error_code_name(error.code)}, {"detail", error.message}};
+    if (names_faces(error.code)) at_fault.assign(error.elements.begin(), error.elements.end());
+  }
+  FileWriter file(picture);
+  const auto drawn =
+      write_model_glb(*model, at_fault, std::move(extras), [&](std::string_view piece) {
+        file.write(piece);
+        return true;
+      });
+  if (drawn) file.keep();
+  return drawn;
 }
 
 }  // namespace symcell::server

@@ -15,6 +15,11 @@ class LocalEngine final : public JobEngine {
                                             ModelFormat format,
                                             const MeshOptions& options,
                                             ExecutionContext& context) override;
+  [[nodiscard]] Result<void> draw(const std::filesystem::path& model,
+                                  ModelFormat format,
+                                  const MeshOptions& options,
+                                  const std::filesystem::path& picture,
+                                  ExecutionContext& context) override;
 };
 
 }  // namespace symcell::server

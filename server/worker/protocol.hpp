@@ -30,12 +30,13 @@ inline constexpr int kWorkerProtocolVersion = 1;
 // The longest message is the document of an inspection; a length above this is no length.
 inline constexpr std::size_t kMaxFrameBytes = std::size_t{64} << 20U;
 
-enum class WorkerTask : std::uint8_t { kMesh, kInspect, kRecognise };
+enum class WorkerTask : std::uint8_t { kMesh, kInspect, kRecognise, kDraw };
 
 struct HelloMessage {};
 struct RequestMessage {
   WorkerTask task = WorkerTask::kMesh;
-  // An inspection uses model, model_format and options; to recognise a model takes nothing else.
+  // An inspection uses model, model_format and options, a drawing also cell, the picture's file; to
+  // recognise a model takes nothing else.
   EngineJob job;
   bool format_is_known = true;  // else model_format means nothing
   WorkerLimits limits;

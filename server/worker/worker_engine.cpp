@@ -147,6 +147,23 @@ Result<std::string> WorkerEngine::inspect(const std::filesystem::path& model,
   return run_request(request, context);
 }
 
+Result<void> WorkerEngine::draw(const std::filesystem::path& model,
+                                ModelFormat format,
+                                const MeshOptions& options,
+                                const std::filesystem::path& picture,
+                                ExecutionContext& context) {
+  RequestMessage request;
+  request.task = WorkerTask::kDraw;
+  request.limits = limits_of(options);
+  request.job.model = model;
+  request.job.model_format = format;
+  request.job.options = options;
+  request.job.cell = picture;
+  const auto done = run_request(request, context);
+  if (!done) return error_of(done);
+  return {};
+}
+
 void WorkerEngine::append_metrics(std::string& text) const {
   const PoolCounts counts = pool_.counts();
   Metrics::append_gauge_header(text, "symcell_worker_processes", "Worker processes by state.");

@@ -33,6 +33,11 @@ class WorkerEngine final : public JobEngine {
                                             ModelFormat format,
                                             const MeshOptions& options,
                                             ExecutionContext& context) override;
+  [[nodiscard]] Result<void> draw(const std::filesystem::path& model,
+                                  ModelFormat format,
+                                  const MeshOptions& options,
+                                  const std::filesystem::path& picture,
+                                  ExecutionContext& context) override;
   [[nodiscard]] std::string fault() const override { return pool_.fault(); }
   void append_metrics(std::string& text) const override;
 

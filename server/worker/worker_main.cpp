@@ -59,6 +59,12 @@ WorkerMessage perform(Work& work) {
       if (!format) return FailedMessage{format.error()};
       return DoneMessage{std::string(model_format_info(*format).name)};
     }
+    if (request.task == WorkerTask::kDraw) {
+      const auto done = engine.draw(request.job.model, request.job.model_format,
+                                    request.job.options, request.job.cell, work.context);
+      if (!done) return FailedMessage{done.error()};
+      return DoneMessage{};
+    }
     auto document = engine.inspect(request.job.model, request.job.model_format, request.job.options,
                                    work.context);
     if (!document) return FailedMessage{document.error()};

@@ -91,14 +91,34 @@ class ApiDescriptionTest(unittest.TestCase):
         return answers
 
     def test_every_example_of_a_job_is_accepted_and_succeeds(self):
-        for answer in self.post_examples("createJob", 202):
-            job = self.server.finished(answer.json()["id"])
-            self.assertEqual(job["state"], "succeeded", job.get("error"))
+        for operation_id in ("createJob", "createJobFromFile", "createJobFromForm"):
+            for answer in self.post_examples(operation_id, 202):
+                job = self.server.finished(answer.json()["id"])
+                self.assertEqual(job["state"], "succeeded", job.get("error"))
         self.call("createJob", body=json.dumps({"model": square()}), status=201,
                   headers={"Content-Type": "application/json", "Prefer": "wait=30"})
 
     def test_every_example_can_be_inspected(self):
-        self.post_examples("inspectModel", 200)
+        for operation_id in ("inspectModel", "inspectFile", "inspectForm"):
+            self.post_examples(operation_id, 200)
+
+    def test_models_are_drawn_with_what_is_known_of_them(self):
+        def extras(answer):
+            self.assertEqual(answer.body[:4], b"glTF")
+            length = int.from_bytes(answer.body[12:16], "little")
+            return json.loads(answer.body[20:20 + length])["scenes"][0]["extras"]
+
+        for job in (self.finished, self.solid):
+            drawn = extras(self.call("getSurface", job["id"], status=200))
+            self.assertEqual(drawn["inspection"]["fold"], 4)
+        self.call("getSurface", self.solid["id"], headers={"Accept": "image/png"}, status=406)
+        headers = {"Content-Type": "application/json", "Accept": "model/gltf-binary"}
+        self.assertIn("inspection", extras(self.call("inspectModel", body=json.dumps({"model": box()}),
+                                                     headers=headers, status=200)))
+        crossed = {**square(), "segments": [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2], [1, 3]]}
+        drawn = self.call("inspectModel", body=json.dumps({"model": crossed}), headers=headers, status=200)
+        self.assertEqual(extras(drawn)["problem"]["code"], "self_intersection")
+        self.assertIn(b'"at fault"', drawn.body)
 
     def test_jobs_are_told_and_listed(self):
         self.call("getJob", self.finished["id"], status=200)
@@ -149,7 +169,8 @@ class ApiDescriptionTest(unittest.TestCase):
 
     def test_refusals_are_described(self):
         send = {"Content-Type": "application/json"}
-        for operation_id in ("createJob", "inspectModel"):
+        for operation_id in ("createJob", "inspectModel", "createJobFromFile", "inspectFile",
+                             "createJobFromForm", "inspectForm"):
             self.call(operation_id, body="{", headers=send, status=400)
             self.call(operation_id, body="x", headers={"Content-Type": "image/png"}, status=415)
         self.call("inspectModel", body=json.dumps({"model": square(), "options": {"fold": 3}}),
@@ -157,7 +178,7 @@ class ApiDescriptionTest(unittest.TestCase):
 
     def test_pages_and_probes_answer(self):
         for operation_id in ("getHealth", "getReadiness", "getMetrics", "getDescription", "getDocs",
-                             "getIndex"):
+                             "getPlainDocs", "getIndex"):
             self.call(operation_id, status=200)
         self.call("getProblemType", "not_symmetric", status=200)
         self.call("getProblemType", "no_such_problem", status=404)
@@ -172,7 +193,7 @@ class ApiDescriptionTest(unittest.TestCase):
             self.assertEqual(list(self.description.faults(example["value"], schema)), [], name)
 
     def test_the_page_knows_every_operation(self):
-        page = self.server.get("/docs").text()
+        page = self.server.get("/docs/plain").text()
         for method, path, _ in self.description.operations():
             self.assertIn(f"<code>{method} {path}</code>", page)
 
@@ -180,6 +201,29 @@ class ApiDescriptionTest(unittest.TestCase):
         described = set(self.description.document["components"]["schemas"]["Options"]["properties"])
         settings = set(self.finished["statistics"]["settings"])
         self.assertLessEqual(settings, described)
+        for operation_id in ("createJobFromFile", "inspectFile"):
+            parameters = [self.description.resolve(parameter)
+                          for parameter in self.operation(operation_id)[2]["parameters"]]
+            in_query = {parameter["name"] for parameter in parameters if parameter["in"] == "query"}
+            self.assertEqual(in_query, described, operation_id)
+        page = self.server.get("/docs/plain").text()
+        for name in described:
+            self.assertIn(f"<code>{name}</code>", page)
+
+    def test_options_may_come_as_an_object_in_the_query(self):
+        body = json.dumps(square())
+        answer = self.server.request(
+            "POST", "/v1/jobs?options%5Bmax_area%5D=0.02&options%5Bfold%5D=2", body,
+            {"Content-Type": "application/octet-stream", "Prefer": "wait=30"})
+        self.assertEqual(answer.status, 201, answer.body)
+        self.assertEqual(answer.json()["options"]["max_area"], 0.02)
+        self.assertEqual(answer.json()["options"]["fold"], 2)
+
+    def test_lists_tell_the_elements_of_finished_jobs(self):
+        listed = {job["id"]: job for job in self.server.get("/v1/jobs?limit=500").json()["jobs"]}
+        for job in (self.finished, self.solid):
+            self.assertEqual(listed[job["id"]]["progress"]["elements"],
+                             job["statistics"]["cell"]["elements"])
 
     @classmethod
     def every_operation(cls):

@@ -2,6 +2,7 @@
 // quarter turns about its centre.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 
@@ -23,11 +24,48 @@ SymmetryCellMesh quarter() {
   return test::disc_cell(4, 1, {3, -1});
 }
 
+SymmetryCellMesh prism() {
+  test::Extrusion how;
+  how.layers = 1;
+  how.height = 1;
+  how.frame.origin = {3, -1, 2};
+  return test::extruded_cell(test::disc_cell(4, 1, {0, 0}), how);
+}
+
 TEST(Golden, Json) {
   expect_golden("quarter_cell.json", written(quarter(), MeshPart::kCell, MeshFormat::kJson));
   expect_golden("quarter_full.json", written(quarter(), MeshPart::kFull, MeshFormat::kJson));
   expect_golden("quarter_cell_order2.json",
                 written(elevate_to_quadratic(quarter()), MeshPart::kCell, MeshFormat::kJson));
+}
+
+TEST(Golden, PackedJson) {
+  WriteOptions packed;
+  packed.packed = PackedReals::kFloat32;
+  expect_golden("quarter_cell_packed.json",
+                written(quarter(), MeshPart::kCell, MeshFormat::kJson, packed));
+  packed.packed = PackedReals::kFloat64;
+  expect_golden("prism_full_packed.json",
+                written(prism(), MeshPart::kFull, MeshFormat::kJson, packed));
+}
+
+// The description of what the binary part holds; that part is read back elsewhere.
+std::string glb_description(const std::string& glb) {
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, glb.data() + at, sizeof value);
+    return value;
+  };
+  EXPECT_EQ(glb.substr(0, 4), "glTF");
+  EXPECT_EQ(number(8), glb.size());
+  return nlohmann::ordered_json::parse(glb.substr(20, number(12))).dump(1) + "\n";
+}
+
+TEST(Golden, Glb) {
+  expect_golden("quarter_full.glb.json",
+                glb_description(written(quarter(), MeshPart::kFull, MeshFormat::kGlb)));
+  expect_golden("prism_cell.glb.json",
+                glb_description(written(prism(), MeshPart::kCell, MeshFormat::kGlb)));
 }
 
 TEST(Golden, Vtu) {
@@ -49,14 +87,6 @@ TEST(Golden, Msh) {
 
 TEST(Golden, Msh2) {
   expect_golden("quarter_cell.msh2", written(quarter(), MeshPart::kCell, MeshFormat::kMsh2));
-}
-
-SymmetryCellMesh prism() {
-  test::Extrusion how;
-  how.layers = 1;
-  how.height = 1;
-  how.frame.origin = {3, -1, 2};
-  return test::extruded_cell(test::disc_cell(4, 1, {0, 0}), how);
 }
 
 TEST(Golden, Solids) {

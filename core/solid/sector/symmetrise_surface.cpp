@@ -64,6 +64,7 @@ Result<SolidInspection> inspect_surface(const TriangleSurface& surface,
   if (!clean->repairs.empty()) result.warnings.push_back(surface_repaired_warning(clean->repairs));
   if (clean->problem) {
     result.problem = clean->problem->message;
+    result.at_fault = clean->problem->elements;
     return result;
   }
   auto found = detect_surface_symmetry(*clean, options, context);

@@ -1,6 +1,7 @@
 #include "tests/unit/server/stub_engine.hpp"
 
 #include <chrono>
+#include <fstream>
 #include <stdexcept>
 
 #include "api/formats/cell_archive.hpp"
@@ -50,6 +51,17 @@ Result<std::string> StubEngine::inspect(const std::filesystem::path& model,
   const std::lock_guard lock(mutex_);
   if (error_) return fail(*error_);
   return "{\"bytes\": " + std::to_string(std::filesystem::file_size(model)) + "}\n";
+}
+
+Result<void> StubEngine::draw(const std::filesystem::path& /*model*/,
+                              ModelFormat /*format*/,
+                              const MeshOptions& /*options*/,
+                              const std::filesystem::path& picture,
+                              ExecutionContext& /*context*/) {
+  const std::lock_guard lock(mutex_);
+  if (error_) return fail(*error_);
+  std::ofstream(picture) << "glTF";
+  return {};
 }
 
 void StubEngine::close_gate() {

@@ -21,6 +21,11 @@ class StubEngine final : public JobEngine {
                                             ModelFormat format,
                                             const MeshOptions& options,
                                             ExecutionContext& context) override;
+  [[nodiscard]] Result<void> draw(const std::filesystem::path& model,
+                                  ModelFormat format,
+                                  const MeshOptions& options,
+                                  const std::filesystem::path& picture,
+                                  ExecutionContext& context) override;
 
   [[nodiscard]] std::string fault() const override { return broken_ ? "the stub is broken" : ""; }
   void append_metrics(std::string& text) const override { text += "stub_engine 1\n"; }

@@ -14,7 +14,7 @@ TEST(MeshFormatNames, NamesAndEndings) {
   EXPECT_FALSE(mesh_format_from_name(""));
   for (const MeshFormat format :
        {MeshFormat::kJson, MeshFormat::kVtu, MeshFormat::kMsh, MeshFormat::kInp, MeshFormat::kBdf,
-        MeshFormat::kCdb, MeshFormat::kVtp, MeshFormat::kSvg, MeshFormat::kStl}) {
+        MeshFormat::kCdb, MeshFormat::kVtp, MeshFormat::kGlb, MeshFormat::kSvg, MeshFormat::kStl}) {
     EXPECT_EQ(mesh_format_from_name(mesh_format_name(format)), format);
     const std::int32_t dimension = format == MeshFormat::kStl ? 3 : 2;
     EXPECT_EQ(mesh_format_from_accept(mesh_format_media_type(format), dimension), format);
