@@ -2,6 +2,7 @@
 // downloads go to SYMCELL_DOWNLOADS, for other programs to open, pictures to SYMCELL_PICTURES if it is set.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
+import { createServer } from 'node:http';
 import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
 
@@ -10,7 +11,7 @@ import { chromium } from 'playwright-core';
 const url = process.env.SYMCELL_URL;
 const axe = await readFile(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const gear = await readFile(process.env.SYMCELL_GEAR);
-const patience = 60_000;
+const patience = 180_000;
 let browser;
 
 before(async () => {
@@ -251,4 +252,21 @@ test('the description is read, and calls are tried', async () => {
   const names = await page.locator('.operation summary code').allInnerTexts();
   assert.ok(names.includes('/v1/jobs/{id}/surface'));
   await close(page);
+});
+
+test('a page of another origin that is allowed sends models and reads answers', async () => {
+  const other = createServer((_, answer) => answer.writeHead(200, { 'Content-Type': 'text/html' }).end('<p>another</p>'));
+  await new Promise((listening) => other.listen(0, '127.0.0.1', listening));
+  const page = await browser.newPage();
+  await page.goto(`http://127.0.0.1:${other.address().port}/`);
+  const job = await page.evaluate(async ([service, data]) => {
+    const form = new FormData();
+    form.append('model', new Blob([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))]), 'gear.stl');
+    const answer = await fetch(`${service}/v1/jobs/form`, { method: 'POST', body: form, headers: { Prefer: 'wait=60' } });
+    return { ...(await answer.json()), location: answer.headers.get('Location') };
+  }, [process.env.SYMCELL_SHARED_URL, gear.toString('base64')]);
+  assert.equal(job.state, 'succeeded');
+  assert.equal(job.location, `/v1/jobs/${job.id}`);
+  await page.close();
+  other.close();
 });
