@@ -77,6 +77,7 @@ class ConnectionStream final : public httplib::Stream {
 // What the server notes about the request that the calling thread serves.
 struct Exchange {
   std::string request_id;
+  std::string client;  // its address
   std::string method;
   std::string path;
   std::string route;             // template of the route, "" if none matched

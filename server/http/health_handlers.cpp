@@ -52,9 +52,9 @@ void show_metrics(Call& call, ServiceContext& context) {
   append_gauge(text, "symcell_stored_bytes", "Bytes of all models and results.",
                static_cast<double>(totals.bytes));
   append_gauge(text, "symcell_queue_length", "Jobs that wait for a worker.",
-               static_cast<double>(runner.queued()));
+               static_cast<double>(totals.by_state[static_cast<std::size_t>(JobState::kQueued)]));
   append_gauge(text, "symcell_queue_limit", "Jobs that may wait.",
-               static_cast<double>(runner.queue_limit()));
+               static_cast<double>(context.jobs.limits().queue_limit));
   append_gauge(text, "symcell_workers", "Jobs that may run at once.",
                static_cast<double>(runner.workers()));
   append_gauge(text, "symcell_workers_busy", "Jobs that run now.",

@@ -300,6 +300,7 @@ class HttpServer::Impl final : public httplib::Server {
     ++in_flight_;
     Exchange exchange;
     exchange.request_id = make_random_hex();
+    exchange.client = connection.client();
     exchange.declared_bytes = connection.head.head().content_length;
     current_exchange = &exchange;
     const bool last = ++connection.served == kMaxKeepAliveRequests || svr_sock_ == INVALID_SOCKET;

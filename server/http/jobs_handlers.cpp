@@ -69,12 +69,14 @@ void submit_job(Call& call, ServiceContext& context) {
   // Before the body is read: refusing early saves both sides the transfer. A repeated request is
   // answered however full the queue is.
   if (context.jobs.stopping()) return respond_stopping(call);
-  if (key.empty() && context.jobs.queue_is_full()) return respond_queue_full(call, context);
+  if (key.empty() && context.jobs.queue_is_full(call.exchange.client))
+    return respond_queue_full(call, context);
 
   const auto request = receive_model_request(call, context, context.max_body_bytes);
   if (!request) return;
-  const SubmitOutcome outcome = context.jobs.submit(
-      {request->model.path(), request->format, request->model_name, request->options, key});
+  const SubmitOutcome outcome =
+      context.jobs.submit({request->model.path(), request->format, request->model_name,
+                           request->options, key, call.exchange.client});
   switch (outcome.status) {
     case SubmitStatus::kReplayed:
       call.response.set_header("Idempotency-Replayed", "true");

@@ -11,7 +11,7 @@
 
 #include "server/base/clock.hpp"
 #include "server/base/identifiers.hpp"
-#include "server/jobs/sqlite_job_store.hpp"
+#include "server/jobs/sqlite_schema.hpp"
 
 namespace symcell::server {
 namespace {

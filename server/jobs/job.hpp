@@ -35,6 +35,8 @@ inline constexpr JobState kAllJobStates[] = {JobState::kQueued, JobState::kRunni
 struct Job {
   std::string id;
   std::int64_t sequence = 0;  // order of acceptance, given by the store
+  std::string client;         // whose it is where clients take turns: a key, or an address
+  std::int32_t weight = 1;    // jobs of this client for one of a client of weight 1
   JobState state = JobState::kQueued;
   std::int64_t created_ms = 0;
   std::optional<std::int64_t> started_ms;
@@ -53,6 +55,7 @@ struct Job {
   std::string statistics_sha256;
   std::int64_t result_bytes = 0;
   std::int32_t lost_workers = 0;  // how often a worker that ran this job was killed from outside
+  std::int32_t attempt = 0;       // how often it was started
 };
 
 }  // namespace symcell::server

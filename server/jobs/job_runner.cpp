@@ -1,7 +1,6 @@
 #include "server/jobs/job_runner.hpp"
 
 #include <algorithm>
-#include <boost/asio/post.hpp>
 #include <cerrno>
 #include <exception>
 #include <new>
@@ -11,7 +10,6 @@
 
 #include "api/problem.hpp"
 #include "api/schema/options.hpp"
-#include "core/base/assert.hpp"
 #include "server/base/clock.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identifiers.hpp"
@@ -58,48 +56,80 @@ std::int64_t file_bytes(const std::filesystem::path& file) {
 
 }  // namespace
 
-JobRunner::JobRunner(RunnerParts parts, std::size_t workers, std::size_t queue_limit)
-    : parts_(parts), workers_(workers), queue_limit_(queue_limit), pool_(workers) {
+JobRunner::JobRunner(RunnerParts parts, std::size_t workers) : parts_(parts), workers_(workers) {
 }
 
 JobRunner::~JobRunner() {
-  pool_.join();
+  static_cast<void>(stop(std::chrono::milliseconds(0)));
+  for (std::thread& thread : threads_) {
+    if (thread.joinable()) thread.join();
+  }
 }
 
-bool JobRunner::try_reserve() {
-  const std::lock_guard lock(mutex_);
-  if (stopping_ || waiting_.size() + reserved_ >= queue_limit_) return false;
-  ++reserved_;
-  return true;
+void JobRunner::start() {
+  threads_.reserve(workers_);
+  for (std::size_t i = 0; i < workers_; ++i) threads_.emplace_back([this] { work(); });
 }
 
-void JobRunner::release_reservation() {
-  const std::lock_guard lock(mutex_);
-  SYMCELL_ASSERT(reserved_ > 0);
-  --reserved_;
-}
-
-void JobRunner::enqueue_reserved(std::string id) {
+void JobRunner::poke() {
   {
     const std::lock_guard lock(mutex_);
-    SYMCELL_ASSERT(reserved_ > 0);
-    --reserved_;
-    waiting_.push_back(std::move(id));
+    ++pokes_;
   }
-  post();
+  wanted_.notify_one();
 }
 
-void JobRunner::enqueue_recovered(std::string id) {
-  {
-    const std::lock_guard lock(mutex_);
-    waiting_.push_back(std::move(id));
-  }
-  post();
+bool JobRunner::wait_for_work(std::uint64_t seen) {
+  std::unique_lock lock(mutex_);
+  wanted_.wait(lock, [&] { return stopping_ || pokes_ != seen; });
+  return !stopping_;
 }
 
-// One task a job: the pool's own queue is no longer than ours.
-void JobRunner::post() {
-  boost::asio::post(pool_, [this] { run_next(); });
+void JobRunner::work() {
+  while (true) {
+    std::uint64_t seen = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      if (stopping_) return;
+      seen = pokes_;
+      ++claiming_;
+    }
+    const std::optional<Job> job = claim();
+    if (job) {
+      run(*job);
+      continue;
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      if (--claiming_ == 0) cancelled_meanwhile_.clear();
+    }
+    if (!wait_for_work(seen)) return;
+  }
+}
+
+std::optional<Job> JobRunner::claim() {
+  std::optional<Job> job;
+  try {
+    static_cast<void>(persist({}, [&] { job = parts_.store.claim(now_ms()); }));
+  } catch (const std::exception& exception) {
+    // A row that nobody can read, or worse: the others are served when the next job comes.
+    parts_.logger.error("job_claim_failed", {{"what", exception.what()}});
+    parts_.metrics.count("symcell_internal_errors_total", {{"where", "job"}});
+  }
+  return job;
+}
+
+std::shared_ptr<JobRunner::Running> JobRunner::enter(const std::string& id) {
+  auto running = std::make_shared<Running>();
+  const std::lock_guard lock(mutex_);
+  running_.emplace(id, running);
+  if (cancelled_meanwhile_.erase(id) > 0) running->context.cancel();
+  if (--claiming_ == 0) cancelled_meanwhile_.clear();
+  if (stopping_) {
+    running->requeue = true;
+    running->context.cancel();
+  }
+  return running;
 }
 
 JobRunner::CancelResult JobRunner::cancel(std::string_view id) {
@@ -108,10 +138,8 @@ JobRunner::CancelResult JobRunner::cancel(std::string_view id) {
     running->second->context.cancel();
     return CancelResult::kStopping;
   }
-  const auto waiting = std::ranges::find(waiting_, id);
-  if (waiting == waiting_.end()) return CancelResult::kNotHere;
-  waiting_.erase(waiting);
-  return CancelResult::kDequeued;
+  if (claiming_ > 0) cancelled_meanwhile_.emplace(id);
+  return CancelResult::kNotHere;
 }
 
 std::optional<Progress> JobRunner::progress(std::string_view id) const {
@@ -119,11 +147,6 @@ std::optional<Progress> JobRunner::progress(std::string_view id) const {
   const auto running = running_.find(id);
   if (running == running_.end()) return std::nullopt;
   return running->second->context.progress();
-}
-
-std::size_t JobRunner::queued() const {
-  const std::lock_guard lock(mutex_);
-  return waiting_.size();
 }
 
 std::size_t JobRunner::running() const {
@@ -135,6 +158,7 @@ bool JobRunner::stop(std::chrono::milliseconds grace) {
   std::unique_lock lock(mutex_);
   stopping_ = true;
   stopped_.notify_all();
+  wanted_.notify_all();
   const auto none_runs = [this] { return running_.empty(); };
   if (!idle_.wait_for(lock, grace, none_runs)) {
     for (const auto& [id, running] : running_) {
@@ -144,23 +168,17 @@ bool JobRunner::stop(std::chrono::milliseconds grace) {
     if (!idle_.wait_for(lock, kCancelPatience, none_runs)) return false;
   }
   lock.unlock();
-  pool_.join();
+  for (std::thread& thread : threads_) {
+    if (thread.joinable()) thread.join();
+  }
   return true;
 }
 
-void JobRunner::run_next() {
-  std::string id;
-  auto running = std::make_shared<Running>();
-  {
-    const std::lock_guard lock(mutex_);
-    // Fewer jobs than tasks: some were cancelled while they waited.
-    if (stopping_ || waiting_.empty()) return;
-    id = std::move(waiting_.front());
-    waiting_.pop_front();
-    running_.emplace(id, running);
-  }
+void JobRunner::run(const Job& job) {
+  const std::string& id = job.id;
+  const auto running = enter(id);
   try {
-    execute(id, *running);
+    execute(job, *running);
   } catch (const std::exception& exception) {
     // A failure that does not pass. The row stays as it is; the next start requeues the job.
     parts_.logger.error("job_bookkeeping_failed", {{"job", id}, {"what", exception.what()}});
@@ -222,19 +240,15 @@ bool JobRunner::publish(const std::string& id) {
   });
 }
 
-void JobRunner::execute(const std::string& id, Running& running) {
-  std::optional<Job> job;
-  const bool asked =
-      persist(id, [&] { job = parts_.store.apply(id, JobEvent::kStart, {.time_ms = now_ms()}); });
-  if (!asked) return;  // the row says queued: the next start takes it up
-  if (!job) return;    // deleted between the queue and here
+void JobRunner::execute(const Job& job, Running& running) {
+  const std::string& id = job.id;
   running.started_steady_ms = steady_ms();
   parts_.logger.info("job_started", {{"job", id}});
   parts_.changes.notify();
 
   Result<void> result;
   try {
-    result = run_engine(*job, running);
+    result = run_engine(job, running);
   } catch (const std::bad_alloc&) {
     result = fail(ErrorCode::kMemoryLimit,
                   "not enough memory for this mesh; relax max_area, max_edge or min_angle");
@@ -243,7 +257,7 @@ void JobRunner::execute(const std::string& id, Running& running) {
     parts_.metrics.count("symcell_internal_errors_total", {{"where", "job"}});
     result = fail(ErrorCode::kInternal, "internal error; the server's log tells more under " + id);
   }
-  settle(*job, running, result);
+  settle(job, running, result);
 }
 
 Result<void> JobRunner::run_engine(const Job& job, Running& running) {
@@ -291,7 +305,7 @@ void JobRunner::keep_fault(const Job& job, const Error& error) {
 void JobRunner::settle(const Job& job, Running& running, const Result<void>& result) {
   // By a clock that nobody sets.
   const std::int64_t took_ms = steady_ms() - running.started_steady_ms;
-  JobChange change{.time_ms = job.started_ms.value_or(0) + took_ms};
+  JobChange change{.time_ms = job.started_ms.value_or(0) + took_ms, .attempt = job.attempt};
   JobEvent event = JobEvent::kSucceed;
   if (result) {
     change.result_bytes =

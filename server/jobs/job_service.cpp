@@ -64,8 +64,7 @@ JobService::JobService(const std::filesystem::path& data_directory,
   store_ = std::make_unique<WatchedJobStore>(
       std::make_unique<SqliteJobStore>(files_.database(), directory_.id()), metrics_, logger_);
   runner_ = std::make_unique<JobRunner>(
-      RunnerParts{engine_, *store_, files_, faults_, changes_, metrics_, logger_}, limits_.workers,
-      limits_.queue_limit);
+      RunnerParts{engine_, *store_, files_, faults_, changes_, metrics_, logger_}, limits_.workers);
 }
 
 JobService::~JobService() {
@@ -91,6 +90,7 @@ void JobService::start() {
       [this](const std::string& id) { files_.remove(id); });
   store_->tidy(std::numeric_limits<std::int64_t>::max());
   for (const Job& job : store_->unfinished()) recover(job);
+  runner_->start();
   retention_ = std::make_unique<RetentionKeeper>(limits_.retention, *store_, files_, logger_);
 }
 
@@ -105,7 +105,6 @@ void JobService::recover(const Job& job) {
     store_->apply(job.id, JobEvent::kRequeue, {.time_ms = now_ms()});
   }
   logger_.info("job_recovered", {{"job", job.id}});
-  runner_->enqueue_recovered(job.id);
 }
 
 void JobService::begin_stop() {
@@ -124,8 +123,19 @@ MeshOptions JobService::capped(MeshOptions options) const {
   return options;
 }
 
-bool JobService::queue_is_full() const {
-  return runner_->queued() >= limits_.queue_limit;
+// A queue of ten places or more keeps a tenth that no client takes alone, so that others find room.
+Admission JobService::admission() const {
+  constexpr std::size_t kShareForOthers = 10;
+  const std::size_t limit = limits_.queue_limit;
+  return {static_cast<std::int64_t>(limit),
+          static_cast<std::int64_t>(limit - limit / kShareForOthers)};
+}
+
+bool JobService::queue_is_full(const std::string& client) {
+  const Admission most = admission();
+  const StoreTotals totals = store_->totals();
+  return totals.by_state[static_cast<std::size_t>(JobState::kQueued)] >= most.queued ||
+         store_->usage(client).queued >= most.queued_of_client;
 }
 
 SubmitOutcome JobService::submit(const Submission& submission) {
@@ -142,38 +152,29 @@ SubmitOutcome JobService::submit(const Submission& submission) {
     }
   }
   if (stopping_) return {SubmitStatus::kStopping, {}};
-  if (!runner_->try_reserve()) {
-    return {stopping_ ? SubmitStatus::kStopping : SubmitStatus::kQueueFull, {}};
+  SubmitOutcome outcome = store(submission, key, options_json);
+  if (outcome.status == SubmitStatus::kAccepted) {
+    runner_->poke();
+    if (retention_) retention_->poke();
   }
-  try {
-    SubmitOutcome outcome = store_reserved(submission, key, options_json);
-    if (outcome.status == SubmitStatus::kAccepted) {
-      runner_->enqueue_reserved(outcome.job.id);
-      if (retention_) retention_->poke();
-    } else {
-      runner_->release_reservation();
-    }
-    return outcome;
-  } catch (...) {
-    runner_->release_reservation();
-    throw;
-  }
+  return outcome;
 }
 
-SubmitOutcome JobService::store_reserved(const Submission& submission,
-                                         const std::optional<IdempotencyKey>& key,
-                                         const std::string& options_json) {
+SubmitOutcome JobService::store(const Submission& submission,
+                                const std::optional<IdempotencyKey>& key,
+                                const std::string& options_json) {
   Job job;
   job.created_ms = now_ms();
   job.id = make_job_id(job.created_ms);
   job.model_format = submission.model_format;
   job.model_name = submission.model_name;
   job.options_json = options_json;
+  job.client = submission.client;
   job.model_bytes = static_cast<std::int64_t>(std::filesystem::file_size(submission.model));
   job.model_sha256 = sha256_of_file(submission.model);
   try {
     files_.adopt_model(submission.model, job.id);
-    InsertOutcome inserted = store_->insert(job, key);
+    InsertOutcome inserted = store_->insert(job, key, admission());
     if (inserted.result == InsertResult::kInserted) {
       settle_or_erase(*store_, files_, job.id);
     } else {
@@ -183,6 +184,7 @@ SubmitOutcome JobService::store_reserved(const Submission& submission,
       case InsertResult::kInserted: return {SubmitStatus::kAccepted, std::move(inserted.job)};
       case InsertResult::kReplayed: return {SubmitStatus::kReplayed, std::move(inserted.job)};
       case InsertResult::kConflict: return {SubmitStatus::kKeyConflict, {}};
+      case InsertResult::kQueueFull: return {SubmitStatus::kQueueFull, {}};
     }
   } catch (...) {
     discard_staged(files_, job.id);
@@ -214,17 +216,14 @@ std::optional<Progress> JobService::progress(std::string_view id) const {
 std::optional<Job> JobService::cancel(std::string_view id) {
   auto job = find(id);
   if (!job || is_finished(job->state)) return job;
-  if (runner_->cancel(id) == JobRunner::CancelResult::kDequeued) {
-    try {
-      store_->apply(id, JobEvent::kCancel, {.time_ms = now_ms()});
-    } catch (...) {
-      // Not cancelled, then: it must not be left queued with nobody to run it.
-      runner_->enqueue_recovered(std::string(id));
-      throw;
-    }
+  if (job->state == JobState::kQueued &&
+      store_->apply(id, JobEvent::kCancel, {.time_ms = now_ms(), .attempt = job->attempt})) {
     logger_.info("job_cancelled_in_queue", {{"job", id}});
     changes_.notify();
+    return find(id);
   }
+  // It runs, or was started just now.
+  runner_->cancel(id);
   return find(id);
 }
 

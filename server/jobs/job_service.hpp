@@ -40,6 +40,7 @@ struct Submission {
   std::string model_name;
   MeshOptions options;
   std::string idempotency_key;  // empty: none
+  std::string client = {};      // whose it is: clients take turns
 };
 
 enum class SubmitStatus : std::uint8_t {
@@ -75,8 +76,8 @@ class JobService {
   [[nodiscard]] bool finish_stop(std::chrono::milliseconds grace);
 
   [[nodiscard]] SubmitOutcome submit(const Submission& submission);
-  // True if a submission without a known key would be refused now.
-  [[nodiscard]] bool queue_is_full() const;
+  // True if a submission of this client without a known key would be refused now.
+  [[nodiscard]] bool queue_is_full(const std::string& client = {});
 
   [[nodiscard]] std::optional<Job> find(std::string_view id);
   [[nodiscard]] std::vector<Job> list(const JobFilter& filter) { return store_->list(filter); }
@@ -102,9 +103,10 @@ class JobService {
 
  private:
   void recover(const Job& job);
-  [[nodiscard]] SubmitOutcome store_reserved(const Submission& submission,
-                                             const std::optional<IdempotencyKey>& key,
-                                             const std::string& options_json);
+  [[nodiscard]] Admission admission() const;
+  [[nodiscard]] SubmitOutcome store(const Submission& submission,
+                                    const std::optional<IdempotencyKey>& key,
+                                    const std::string& options_json);
 
   JobLimits limits_;
   JobEngine& engine_;

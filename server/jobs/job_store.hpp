@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -36,8 +37,20 @@ struct IdempotencyKey {
 
 enum class InsertResult : std::uint8_t {
   kInserted,
-  kReplayed,  // the key is known with this digest: the job in the outcome is the earlier one
-  kConflict,  // the key is known with another digest
+  kReplayed,   // the key is known with this digest: the job in the outcome is the earlier one
+  kConflict,   // the key is known with another digest
+  kQueueFull,  // in all, or with jobs of this client
+};
+
+// What a job must find to be taken: places in the queue, and for its client.
+struct Admission {
+  std::int64_t queued = std::numeric_limits<std::int64_t>::max();
+  std::int64_t queued_of_client = std::numeric_limits<std::int64_t>::max();
+};
+
+// What a client has at present.
+struct ClientUsage {
+  std::int64_t queued = 0;
 };
 
 struct InsertOutcome {
@@ -56,6 +69,9 @@ struct JobChange {
   // By the machine's clock. Where that was set back, a job starts no earlier than it came and ends
   // no earlier than it started.
   std::int64_t time_ms = 0;
+  // Of the run that writes. Where the job was started again since, nothing is written: a run that was
+  // given up may still go on somewhere.
+  std::optional<std::int32_t> attempt = {};
   std::string error_code = {};
   std::string error_json = {};
   std::int64_t result_bytes = 0;
@@ -71,8 +87,10 @@ class JobStore {
  public:
   virtual ~JobStore() = default;
 
-  // `job.sequence` is given by the store.
-  virtual InsertOutcome insert(const Job& job, const std::optional<IdempotencyKey>& key) = 0;
+  // `job.sequence` is given by the store, and so is its turn among those that wait.
+  virtual InsertOutcome insert(const Job& job,
+                               const std::optional<IdempotencyKey>& key,
+                               const Admission& admission) = 0;
   // kReplayed or kConflict; nullopt if the key is unknown.
   [[nodiscard]] virtual std::optional<InsertOutcome> find_key(const IdempotencyKey& key) = 0;
   [[nodiscard]] virtual std::optional<Job> find(std::string_view id) = 0;
@@ -82,7 +100,12 @@ class JobStore {
   [[nodiscard]] virtual std::vector<Job> unfinished() = 0;
   // Finished jobs, oldest first.
   [[nodiscard]] virtual std::vector<Job> oldest_finished(std::size_t limit) = 0;
-  // The job after the event; nullopt if it is gone or the event is not allowed in its state.
+  [[nodiscard]] virtual ClientUsage usage(std::string_view client) = 0;
+  // Starts the job whose turn it is: clients take turns, as many jobs each as their weight, and each
+  // one's jobs go in the order they came. nullopt: none waits that may run.
+  virtual std::optional<Job> claim(std::int64_t time_ms) = 0;
+  // The job after the event; nullopt if it is gone or the event is not allowed in its state,
+  // or `change.attempt` is not its attempt.
   virtual std::optional<Job> apply(std::string_view id,
                                    JobEvent event,
                                    const JobChange& change) = 0;

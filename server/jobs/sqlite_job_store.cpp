@@ -1,77 +1,20 @@
 #include "server/jobs/sqlite_job_store.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <fcntl.h>
 #include <sqlite3.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <string>
 
+#include "server/jobs/sqlite_schema.hpp"
+
 namespace symcell::server {
 namespace {
 
-// One entry a schema version; entry i takes version i to version i + 1. Never edited, only added
-// to.
-constexpr std::array kMigrations = {
-    R"sql(
-CREATE TABLE jobs (
-  sequence INTEGER PRIMARY KEY AUTOINCREMENT,
-  id TEXT NOT NULL UNIQUE,
-  state TEXT NOT NULL,
-  created_ms INTEGER NOT NULL,
-  started_ms INTEGER,
-  finished_ms INTEGER,
-  model_format TEXT NOT NULL,
-  model_name TEXT NOT NULL,
-  options_json TEXT NOT NULL,
-  error_code TEXT NOT NULL DEFAULT '',
-  error_json TEXT NOT NULL DEFAULT '',
-  model_bytes INTEGER NOT NULL,
-  result_bytes INTEGER NOT NULL DEFAULT 0,
-  crashes INTEGER NOT NULL DEFAULT 0
-) STRICT;
-CREATE INDEX jobs_by_state ON jobs (state, sequence);
-CREATE TABLE idempotency_keys (
-  key TEXT PRIMARY KEY,
-  digest TEXT NOT NULL,
-  job_id TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE
-) STRICT;
-CREATE INDEX idempotency_keys_by_job ON idempotency_keys (job_id);
-)sql",
-    R"sql(
-CREATE TABLE properties (name TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT;
-CREATE TABLE erased (id TEXT PRIMARY KEY) STRICT;
-)sql",
-    // Counted before: deaths of the server, which are no fault of the job's.
-    R"sql(
-ALTER TABLE jobs RENAME COLUMN crashes TO lost_workers;
-UPDATE jobs SET lost_workers = 0 WHERE lost_workers <> 0;
-)sql",
-    R"sql(
-CREATE INDEX jobs_by_end ON jobs (finished_ms, sequence) WHERE finished_ms IS NOT NULL;
-)sql",
-    R"sql(
-ALTER TABLE jobs ADD COLUMN finished_clock_ms INTEGER;
-UPDATE jobs SET finished_clock_ms = finished_ms;
-DROP INDEX jobs_by_end;
-CREATE INDEX jobs_by_end ON jobs (finished_clock_ms, sequence) WHERE finished_clock_ms IS NOT NULL;
-)sql",
-    R"sql(
-ALTER TABLE jobs ADD COLUMN model_sha256 TEXT NOT NULL DEFAULT '';
-ALTER TABLE jobs ADD COLUMN statistics_sha256 TEXT NOT NULL DEFAULT '';
-)sql",
-};
-
-// How long a statement waits for another process that holds the database, a backup for instance.
-// Whoever must not fail for it asks again.
-constexpr int kBusyPatienceMs = 2000;
 // Most that the clock of the store goes on between two servers. A machine whose clock was set a month
 // ahead would else take every job for a month old; so jobs of a server that was down for longer are
 // kept for longer.
@@ -82,7 +25,7 @@ constexpr std::chrono::milliseconds kHealthPatience{250};
 constexpr const char* kColumns =
     "sequence, id, state, created_ms, started_ms, finished_ms, model_format, model_name, "
     "options_json, error_code, error_json, model_bytes, result_bytes, lost_workers, "
-    "finished_clock_ms, model_sha256, statistics_sha256";
+    "finished_clock_ms, model_sha256, statistics_sha256, client, weight, attempt";
 
 std::string format_name(ModelFormat format) {
   return std::string(model_format_info(format).name);
@@ -119,6 +62,9 @@ Job read_job(SQLite::Statement& row) {
   job.finished_clock_ms = optional_time(row.getColumn(14));
   job.model_sha256 = row.getColumn(15).getString();
   job.statistics_sha256 = row.getColumn(16).getString();
+  job.client = row.getColumn(17).getString();
+  job.weight = row.getColumn(18).getInt();
+  job.attempt = row.getColumn(19).getInt();
   return job;
 }
 
@@ -126,22 +72,6 @@ std::vector<Job> read_jobs(SQLite::Statement& query) {
   std::vector<Job> jobs;
   while (query.executeStep()) jobs.push_back(read_job(query));
   return jobs;
-}
-
-void migrate(SQLite::Database& database) {
-  const int version = database.execAndGet("PRAGMA user_version").getInt();
-  const int newest = static_cast<int>(kMigrations.size());
-  if (version > newest) {
-    throw std::runtime_error("the job database has version " + std::to_string(version) +
-                             ", this program knows up to " + std::to_string(newest) +
-                             ": use a newer program or another data directory");
-  }
-  for (int step = version; step < newest; ++step) {
-    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
-    database.exec(kMigrations[static_cast<std::size_t>(step)]);
-    database.exec("PRAGMA user_version = " + std::to_string(step + 1));
-    transaction.commit();
-  }
 }
 
 StoreError::Kind kind_of(const SQLite::Exception& exception) {
@@ -164,68 +94,21 @@ auto translated(const Work& work) {
   }
 }
 
-// SQLite would create it readable for all.
-const std::filesystem::path& create_for_owner(const std::filesystem::path& file) {
-  constexpr mode_t kOwner = S_IRUSR | S_IWUSR;
-  const int created = ::open(file.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, kOwner);
-  if (created < 0) throw std::runtime_error("cannot open the job database " + file.string());
-  // An earlier version left it to the umask.
-  ::fchmod(created, kOwner);
-  ::close(created);
-  return file;
-}
-
-DatabaseFinding examine(SQLite::Database& database) {
-  const std::string fault = database.execAndGet("PRAGMA quick_check(1)").getString();
-  if (fault != "ok") return {DatabaseState::kDamaged, {}, fault};
-  if (database.execAndGet("SELECT COUNT(*) FROM sqlite_schema").getInt() == 0) {
-    return {DatabaseState::kEmpty, {}, {}};
-  }
-  if (!database.tableExists("jobs") || !database.tableExists("idempotency_keys")) {
-    return {DatabaseState::kForeign, {}, {}};
-  }
-  DatabaseFinding finding{DatabaseState::kOurs, {}, {}};
-  if (database.tableExists("properties")) {
-    SQLite::Statement query(database, "SELECT value FROM properties WHERE name = 'directory_id'");
-    if (query.executeStep()) finding.directory_id = query.getColumn(0).getString();
-  }
-  return finding;
-}
-
 }  // namespace
-
-DatabaseFinding examine_job_database(const std::filesystem::path& file) {
-  const auto status = std::filesystem::symlink_status(file);
-  if (!std::filesystem::exists(status)) return {};
-  if (!std::filesystem::is_regular_file(status)) {
-    throw std::runtime_error(file.string() + " should be a file, and no symbolic link");
-  }
-  try {
-    // Writable, for a log that a killed server left is read into the database first.
-    SQLite::Database database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW);
-    database.setBusyTimeout(kBusyPatienceMs);
-    return examine(database);
-  } catch (const SQLite::Exception& exception) {
-    const int code = exception.getErrorCode();
-    if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB) {
-      return {DatabaseState::kDamaged, {}, exception.what()};
-    }
-    throw;
-  }
-}
 
 struct SqliteJobStore::Impl {
   Impl(const std::filesystem::path& file, const std::string& directory_id, MachineClocks machine)
       : clocks(std::move(machine)),
-        database(create_for_owner(file).string(), SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW),
+        database(create_job_database(file).string(),
+                 SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW),
         reader(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW) {
-    reader.setBusyTimeout(kBusyPatienceMs);
-    database.setBusyTimeout(kBusyPatienceMs);
+    reader.setBusyTimeout(kSqliteBusyPatienceMs);
+    database.setBusyTimeout(kSqliteBusyPatienceMs);
     database.exec("PRAGMA journal_mode = WAL");
     // FULL: a commit is on the disk when it returns; an accepted job is never lost.
     database.exec("PRAGMA synchronous = FULL");
     database.exec("PRAGMA foreign_keys = ON");
-    migrate(database);
+    migrate_job_database(database);
     load_totals();
     start_clock();
     if (directory_id.empty()) return;
@@ -309,6 +192,36 @@ struct SqliteJobStore::Impl {
     totals.bytes += bytes;
   }
 
+  [[nodiscard]] std::int64_t queued() {
+    const std::lock_guard lock(counting);
+    return totals.by_state[static_cast<std::size_t>(JobState::kQueued)];
+  }
+
+  static ClientUsage usage(SQLite::Database& database, std::string_view client) {
+    SQLite::Statement query(database,
+                            "SELECT COUNT(*) FROM jobs INDEXED BY jobs_waiting_by_client "
+                            "WHERE state = 'queued' AND client = ?");
+    query.bind(1, std::string(client));
+    query.executeStep();
+    return {.queued = query.getColumn(0).getInt64()};
+  }
+
+  // Turns are times of a virtual clock (start-time fair queueing): it stands at the turn of the job
+  // started last, and a client's next job comes 1 / weight after its last one, or after the clock.
+  // So who asked for little is served before the long queue of another.
+  static double next_turn(SQLite::Database& database, const std::string& client, int weight) {
+    SQLite::Statement query(
+        database,
+        "SELECT MAX(COALESCE("
+        "(SELECT MAX(turn) FROM jobs INDEXED BY jobs_running WHERE state = 'running'), "
+        "(SELECT MIN(turn) FROM jobs INDEXED BY jobs_waiting WHERE state = 'queued'), 0), "
+        "COALESCE((SELECT MAX(turn) FROM jobs INDEXED BY jobs_waiting_by_client "
+        "WHERE state = 'queued' AND client = ?), 0))");
+    query.bind(1, client);
+    query.executeStep();
+    return query.getColumn(0).getDouble() + 1.0 / std::max(1, weight);
+  }
+
   std::mutex counting;  // guards `totals`
   StoreTotals totals;
 
@@ -345,16 +258,22 @@ SqliteJobStore::SqliteJobStore(const std::filesystem::path& file,
 
 SqliteJobStore::~SqliteJobStore() = default;
 
-InsertOutcome SqliteJobStore::insert(const Job& job, const std::optional<IdempotencyKey>& key) {
+InsertOutcome SqliteJobStore::insert(const Job& job,
+                                     const std::optional<IdempotencyKey>& key,
+                                     const Admission& admission) {
   return impl_->write([&](SQLite::Database& database) -> InsertOutcome {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
     if (key) {
       if (auto known = Impl::known_key(database, *key)) return *known;
     }
+    if (impl_->queued() >= admission.queued ||
+        Impl::usage(database, job.client).queued >= admission.queued_of_client) {
+      return {InsertResult::kQueueFull, {}};
+    }
     SQLite::Statement insert(database,
                              "INSERT INTO jobs (id, state, created_ms, model_format, model_name, "
-                             "options_json, model_bytes, model_sha256) "
-                             "VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+                             "options_json, model_bytes, model_sha256, client, weight, turn) "
+                             "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     insert.bind(1, job.id);
     insert.bind(2, std::string(job_state_name(job.state)));
     insert.bind(3, job.created_ms);
@@ -363,6 +282,9 @@ InsertOutcome SqliteJobStore::insert(const Job& job, const std::optional<Idempot
     insert.bind(6, job.options_json);
     insert.bind(7, job.model_bytes);
     insert.bind(8, job.model_sha256);
+    insert.bind(9, job.client);
+    insert.bind(10, job.weight);
+    insert.bind(11, Impl::next_turn(database, job.client, job.weight));
     insert.exec();
     Job stored = job;
     stored.sequence = database.getLastInsertRowid();
@@ -377,6 +299,36 @@ InsertOutcome SqliteJobStore::insert(const Job& job, const std::optional<Idempot
     transaction.commit();
     impl_->count(job.state, 1, job.model_bytes);
     return {InsertResult::kInserted, stored};
+  });
+}
+
+ClientUsage SqliteJobStore::usage(std::string_view client) {
+  return impl_->read([&](SQLite::Database& database) { return Impl::usage(database, client); });
+}
+
+std::optional<Job> SqliteJobStore::claim(std::int64_t time_ms) {
+  return impl_->write([&](SQLite::Database& database) -> std::optional<Job> {
+    if (impl_->queued() == 0) return std::nullopt;
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    SQLite::Statement query(database, std::string("SELECT ") + kColumns +
+                                          " FROM jobs INDEXED BY jobs_waiting WHERE state = "
+                                          "'queued' ORDER BY turn, sequence LIMIT 1");
+    if (!query.executeStep()) return std::nullopt;
+    Job job = read_job(query);
+    job.state = JobState::kRunning;
+    job.started_ms = std::max(time_ms, job.created_ms);
+    ++job.attempt;
+    SQLite::Statement start(
+        database, "UPDATE jobs SET state = 'running', started_ms = ?, attempt = ? WHERE id = ?");
+    start.bind(1, *job.started_ms);
+    start.bind(2, job.attempt);
+    start.bind(3, job.id);
+    start.exec();
+    query.reset();
+    transaction.commit();
+    impl_->count(JobState::kQueued, -1, 0);
+    impl_->count(JobState::kRunning, 1, 0);
+    return job;
   });
 }
 
@@ -427,11 +379,14 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
     auto job = Impl::find(database, id);
     if (!job) return std::nullopt;
     const auto next = next_state(job->state, event);
-    if (!next) return std::nullopt;
+    if (!next || (change.attempt && *change.attempt != job->attempt)) return std::nullopt;
     const JobState state_before = job->state;
     const std::int64_t bytes_before = job->result_bytes;
     job->state = *next;
-    if (event == JobEvent::kStart) job->started_ms = std::max(change.time_ms, job->created_ms);
+    if (event == JobEvent::kStart) {
+      job->started_ms = std::max(change.time_ms, job->created_ms);
+      ++job->attempt;
+    }
     if (event == JobEvent::kRequeue) job->started_ms.reset();
     if (is_finished(*next)) {
       job->finished_ms = std::max(change.time_ms, job->started_ms.value_or(job->created_ms));
@@ -445,7 +400,8 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
     SQLite::Statement update(database,
                              "UPDATE jobs SET state = ?, started_ms = ?, finished_ms = ?, "
                              "error_code = ?, error_json = ?, result_bytes = ?, "
-                             "finished_clock_ms = ?, statistics_sha256 = ? WHERE id = ?");
+                             "finished_clock_ms = ?, statistics_sha256 = ?, attempt = ? "
+                             "WHERE id = ?");
     update.bind(1, std::string(job_state_name(job->state)));
     if (job->started_ms) update.bind(2, *job->started_ms);
     if (job->finished_ms) update.bind(3, *job->finished_ms);
@@ -454,7 +410,8 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
     update.bind(6, job->result_bytes);
     if (job->finished_clock_ms) update.bind(7, *job->finished_clock_ms);
     update.bind(8, job->statistics_sha256);
-    update.bind(9, job->id);
+    update.bind(9, job->attempt);
+    update.bind(10, job->id);
     update.exec();
     transaction.commit();
     impl_->count(state_before, -1, 0);
@@ -535,10 +492,10 @@ void SqliteJobStore::check_health() {
           "INSERT INTO properties (name, value) VALUES ('probe', '0') "
           "ON CONFLICT (name) DO UPDATE SET value = 1 - value");
     } catch (...) {
-      database.setBusyTimeout(kBusyPatienceMs);
+      database.setBusyTimeout(kSqliteBusyPatienceMs);
       throw;
     }
-    database.setBusyTimeout(kBusyPatienceMs);
+    database.setBusyTimeout(kSqliteBusyPatienceMs);
   });
 }
 

@@ -58,8 +58,21 @@ auto WatchedJobStore::watched(std::string_view operation, bool writes, const Wor
   }
 }
 
-InsertOutcome WatchedJobStore::insert(const Job& job, const std::optional<IdempotencyKey>& key) {
-  return watched("insert", true, [&] { return store_->insert(job, key); });
+InsertOutcome WatchedJobStore::insert(const Job& job,
+                                      const std::optional<IdempotencyKey>& key,
+                                      const Admission& admission) {
+  return watched("insert", true, [&] { return store_->insert(job, key, admission); });
+}
+
+ClientUsage WatchedJobStore::usage(std::string_view client) {
+  return watched("usage", false, [&] { return store_->usage(client); });
+}
+
+std::optional<Job> WatchedJobStore::claim(std::int64_t time_ms) {
+  // Finding nothing to start writes nothing.
+  auto job = watched("claim", false, [&] { return store_->claim(time_ms); });
+  if (job) wrote();
+  return job;
 }
 
 std::optional<InsertOutcome> WatchedJobStore::find_key(const IdempotencyKey& key) {

@@ -19,7 +19,7 @@ class RetentionTest : public ::testing::Test {
     Job job;
     job.id = id;
     job.model_bytes = 10;
-    store_.insert(job, std::nullopt);
+    store_.insert(job, std::nullopt, {});
     steady_ = finished_ms;
     store_.apply(id, JobEvent::kStart, {.time_ms = finished_ms});
     store_.apply(id, JobEvent::kSucceed, {.time_ms = finished_ms, .result_bytes = 90});
@@ -99,7 +99,7 @@ TEST_F(RetentionTest, NoJobEndsBeforeItStarts) {
   Job job;
   job.id = "a";
   job.created_ms = 5000;
-  store_.insert(job, std::nullopt);
+  store_.insert(job, std::nullopt, {});
   EXPECT_EQ(store_.apply("a", JobEvent::kStart, {.time_ms = 1000})->started_ms, 5000);
   EXPECT_EQ(store_.apply("a", JobEvent::kSucceed, {.time_ms = 2000})->finished_ms, 5000);
 }
@@ -108,7 +108,7 @@ TEST_F(RetentionTest, UnfinishedJobsStay) {
   Job job;
   job.id = "waiting";
   job.model_bytes = 1000;
-  store_.insert(job, std::nullopt);
+  store_.insert(job, std::nullopt, {});
   EXPECT_EQ(apply({.max_age_s = 1, .max_jobs = 1, .max_bytes = 1}), 0U);
   EXPECT_TRUE(store_.find("waiting"));
 }

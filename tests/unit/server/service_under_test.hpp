@@ -38,13 +38,16 @@ class ServiceUnderTest {
     return joined;
   }
 
-  SubmitOutcome submit(const std::string& key = "", double max_area = kInfinity) {
+  SubmitOutcome submit(const std::string& key = "",
+                       double max_area = kInfinity,
+                       const std::string& client = "") {
     const auto arrived = jobs->files().incoming();
     symcell::test::write_file(arrived, square_json());
     Submission submission;
     submission.model = arrived;
     submission.options.max_area = max_area;
     submission.idempotency_key = key;
+    submission.client = client;
     return jobs->submit(submission);
   }
 
