@@ -21,6 +21,11 @@ namespace {
 // How long a cancelled engine may take before stop() gives it up; it promises one second.
 constexpr std::chrono::seconds kCancelPatience{5};
 
+// How often a shared store is asked for jobs that nobody told of, and told of runs (a lease is 15 s).
+constexpr std::chrono::seconds kPollInterval{5};
+constexpr std::chrono::milliseconds kKeepInterval{1000};
+// What a job may take beyond its time limit: the engine kills its process within a second.
+constexpr double kOverdueSeconds = 60;
 // Between two tries of what the store or the disk refused.
 constexpr std::chrono::milliseconds kFirstPause{50};
 constexpr std::chrono::milliseconds kLongestPause{1000};
@@ -59,16 +64,81 @@ std::int64_t file_bytes(const std::filesystem::path& file) {
 JobRunner::JobRunner(RunnerParts parts, std::size_t workers) : parts_(parts), workers_(workers) {
 }
 
+void JobRunner::declare_metrics(Metrics& metrics) {
+  metrics.declare_counter("symcell_job_errors_total", "Failed jobs by error code.");
+  metrics.declare_histogram("symcell_job_duration_seconds",
+                            "Time jobs ran, by the state they ended in.",
+                            {0.01, 0.05, 0.25, 1, 5, 30, 120, 600, 3600});
+  metrics.declare_histogram("symcell_job_wait_seconds", "Time jobs waited before they ran.",
+                            {0.01, 0.05, 0.25, 1, 5, 30, 120, 600, 3600});
+  metrics.declare_histogram("symcell_phase_duration_seconds",
+                            "Time of a phase of a job that succeeded.",
+                            {0.001, 0.01, 0.05, 0.25, 1, 5, 30, 120, 600, 3600});
+  metrics.declare_counter("symcell_elements_total",
+                          "Elements of the cells of jobs that succeeded.");
+  metrics.declare_counter("symcell_job_write_retries_total",
+                          "Times that a job's state or results could not be written and were tried "
+                          "again.");
+  metrics.declare_counter("symcell_jobs_rescued_total",
+                          "Runs queued again because their server gave no sign of life.");
+  metrics.declare_counter("symcell_internal_errors_total", "Bugs and failures of the machine.");
+}
+
 JobRunner::~JobRunner() {
+  if (parts_.store.shared()) parts_.store.listen(nullptr);
   static_cast<void>(stop(std::chrono::milliseconds(0)));
   for (std::thread& thread : threads_) {
     if (thread.joinable()) thread.join();
   }
+  if (keeper_.joinable()) keeper_.join();
 }
 
 void JobRunner::start() {
   threads_.reserve(workers_);
   for (std::size_t i = 0; i < workers_; ++i) threads_.emplace_back([this] { work(); });
+  if (!parts_.store.shared()) return;
+  keeper_ = std::thread([this] { keep_runs(); });
+  parts_.store.listen([this] {
+    poke();
+    parts_.changes.notify();
+  });
+}
+
+void JobRunner::keep_runs() {
+  while (true) {
+    keep_runs_once();
+    std::unique_lock lock(mutex_);
+    if (stopped_.wait_for(lock, kKeepInterval, [this] { return stopping_ && running_.empty(); })) {
+      return;
+    }
+  }
+}
+
+void JobRunner::keep_runs_once() {
+  std::vector<RunState> runs;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, running] : running_) {
+      runs.push_back({id, running->attempt, running->context.progress()});
+    }
+  }
+  try {
+    const std::vector<RunOrder> orders =
+        runs.empty() ? std::vector<RunOrder>() : parts_.store.keep(runs);
+    const std::size_t rescued = parts_.store.rescue();
+    if (rescued > 0) {
+      parts_.metrics.count("symcell_jobs_rescued_total", {}, static_cast<double>(rescued));
+      parts_.logger.warning("jobs_rescued", {{"count", static_cast<std::int64_t>(rescued)}});
+      poke();
+    }
+    const std::lock_guard lock(mutex_);
+    for (const RunOrder& order : orders) {
+      const auto running = running_.find(order.id);
+      if (running != running_.end()) running->second->context.cancel();
+    }
+  } catch (const std::exception&) {
+    // Told by the store's watch. Whoever else runs these jobs meanwhile is told apart by its attempt.
+  }
 }
 
 void JobRunner::poke() {
@@ -80,8 +150,14 @@ void JobRunner::poke() {
 }
 
 bool JobRunner::wait_for_work(std::uint64_t seen) {
+  const auto news = [&] { return stopping_ || pokes_ != seen; };
   std::unique_lock lock(mutex_);
-  wanted_.wait(lock, [&] { return stopping_ || pokes_ != seen; });
+  // Word from other servers may be lost with a connection.
+  if (parts_.store.shared()) {
+    wanted_.wait_for(lock, kPollInterval, news);
+  } else {
+    wanted_.wait(lock, news);
+  }
   return !stopping_;
 }
 
@@ -119,8 +195,10 @@ std::optional<Job> JobRunner::claim() {
   return job;
 }
 
-std::shared_ptr<JobRunner::Running> JobRunner::enter(const std::string& id) {
+std::shared_ptr<JobRunner::Running> JobRunner::enter(const Job& job) {
+  const std::string& id = job.id;
   auto running = std::make_shared<Running>();
+  running->attempt = job.attempt;
   const std::lock_guard lock(mutex_);
   running_.emplace(id, running);
   if (cancelled_meanwhile_.erase(id) > 0) running->context.cancel();
@@ -147,6 +225,15 @@ std::optional<Progress> JobRunner::progress(std::string_view id) const {
   const auto running = running_.find(id);
   if (running == running_.end()) return std::nullopt;
   return running->second->context.progress();
+}
+
+std::size_t JobRunner::overdue() const {
+  const std::lock_guard lock(mutex_);
+  const std::int64_t now = steady_ms();
+  return static_cast<std::size_t>(std::ranges::count_if(running_, [&](const auto& entry) {
+    const double ran_s = static_cast<double>(now - entry.second->started_steady_ms) / 1000;
+    return ran_s > entry.second->limit_s + kOverdueSeconds;
+  }));
 }
 
 std::size_t JobRunner::running() const {
@@ -176,7 +263,7 @@ bool JobRunner::stop(std::chrono::milliseconds grace) {
 
 void JobRunner::run(const Job& job) {
   const std::string& id = job.id;
-  const auto running = enter(id);
+  const auto running = enter(job);
   try {
     execute(job, *running);
   } catch (const std::exception& exception) {
@@ -192,6 +279,8 @@ void JobRunner::run(const Job& job) {
   }
   remove_files_if_deleted(id);
   parts_.changes.notify();
+  // Another of this client's jobs may have waited for this one.
+  if (job.most_running > 0) poke();
 }
 
 // Whoever deletes a job leaves its files to the worker that still holds it; by now nobody does.
@@ -233,17 +322,23 @@ void JobRunner::count_lost_worker(const std::string& id) {
   static_cast<void>(persist(id, [&] { parts_.store.count_lost_worker(id); }));
 }
 
-bool JobRunner::publish(const std::string& id) {
-  return persist(id, [&] {
-    publish_file(parts_.files.statistics(id));
-    publish_file(parts_.files.cell(id));
+bool JobRunner::publish(const Job& job) {
+  return persist(job.id, [&] {
+    publish_file(parts_.files.statistics(job));
+    publish_file(parts_.files.cell(job));
   });
 }
 
 void JobRunner::execute(const Job& job, Running& running) {
   const std::string& id = job.id;
-  running.started_steady_ms = steady_ms();
-  parts_.logger.info("job_started", {{"job", id}});
+  const double waited_s =
+      static_cast<double>(job.started_ms.value_or(job.created_ms) - job.created_ms) / 1000;
+  parts_.metrics.observe("symcell_job_wait_seconds", waited_s);
+  parts_.logger.info("job_started", {{"job", id},
+                                     {"attempt", std::int64_t{job.attempt}},
+                                     {"waited", waited_s},
+                                     {"request_id", std::string_view(job.request_id)},
+                                     {"trace", trace_id_of(job.traceparent)}});
   parts_.changes.notify();
 
   Result<void> result;
@@ -267,14 +362,15 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
   work.model = parts_.files.model(job.id);
   work.model_format = job.model_format;
   work.options = *options;
-  work.cell = JobFiles::partial(parts_.files.cell(job.id));
-  work.statistics = JobFiles::partial(parts_.files.statistics(job.id));
+  work.cell = JobFiles::partial(parts_.files.cell(job));
+  work.statistics = JobFiles::partial(parts_.files.statistics(job));
   work.lost_workers = job.lost_workers;
   work.on_lost_worker = [this, &job] { count_lost_worker(job.id); };
   // Left by a run that died.
   std::filesystem::remove(work.cell);
   std::filesystem::remove(work.statistics);
 
+  running.limit_s = options->time_limit_s;
   running.context.set_time_limit(options->time_limit_s);
   running.context.set_max_elements(options->max_elements);
   SYMCELL_TRY(running.context.check());
@@ -285,7 +381,7 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
                 std::string(damaged.what()) + "; the server's disk is at fault: submit it again");
   }
   SYMCELL_TRY(parts_.engine.run(work, running.context));
-  if (!publish(job.id)) {
+  if (!publish(job)) {
     running.requeue = true;
     return fail(ErrorCode::kCancelled, "the server stops");
   }
@@ -302,6 +398,26 @@ void JobRunner::keep_fault(const Job& job, const Error& error) {
                        {"kept", kept ? kept->native() : std::string("not kept")}});
 }
 
+void JobRunner::count_phases(const Job& job) {
+  try {
+    const auto document = nlohmann::json::parse(
+        MappedFile(parts_.files.statistics(job), Links::kRefuse).bytes(), nullptr, false);
+    if (!document.is_object()) return;
+    if (document.contains("timings_ms")) {
+      for (const auto& [phase, ms] : document["timings_ms"].items()) {
+        if (!ms.is_number()) continue;
+        parts_.metrics.observe("symcell_phase_duration_seconds", ms.get<double>() / 1000,
+                               {{"phase", phase}});
+      }
+    }
+    if (document.contains("cell")) {
+      parts_.metrics.count("symcell_elements_total", {}, document["cell"].value("elements", 0.0));
+    }
+  } catch (const std::exception&) {
+    // Deleted meanwhile; the figures are of no job then.
+  }
+}
+
 void JobRunner::settle(const Job& job, Running& running, const Result<void>& result) {
   // By a clock that nobody sets.
   const std::int64_t took_ms = steady_ms() - running.started_steady_ms;
@@ -309,8 +425,8 @@ void JobRunner::settle(const Job& job, Running& running, const Result<void>& res
   JobEvent event = JobEvent::kSucceed;
   if (result) {
     change.result_bytes =
-        file_bytes(parts_.files.cell(job.id)) + file_bytes(parts_.files.statistics(job.id));
-    change.statistics_sha256 = sha256_of_file(parts_.files.statistics(job.id));
+        file_bytes(parts_.files.cell(job)) + file_bytes(parts_.files.statistics(job));
+    change.statistics_sha256 = sha256_of_file(parts_.files.statistics(job));
   } else if (result.error().code == ErrorCode::kCancelled) {
     event = running.requeue ? JobEvent::kRequeue : JobEvent::kCancel;
   } else {
@@ -328,16 +444,19 @@ void JobRunner::settle(const Job& job, Running& running, const Result<void>& res
     parts_.logger.error("job_end_not_written", {{"job", job.id}});
     return;
   }
-  if (!settled) return;  // deleted while it ran
+  if (!settled) return;  // deleted while it ran, or started again by another server
   const double seconds = static_cast<double>(took_ms) / 1000;
   const std::string_view state = job_state_name(settled->state);
   parts_.logger.info(event == JobEvent::kRequeue ? "job_requeued" : "job_finished",
                      {{"job", job.id},
                       {"state", state},
                       {"seconds", seconds},
-                      {"error", std::string_view(change.error_code)}});
+                      {"error", std::string_view(change.error_code)},
+                      {"request_id", std::string_view(job.request_id)},
+                      {"trace", trace_id_of(job.traceparent)}});
   if (event == JobEvent::kRequeue) return;
   parts_.metrics.observe("symcell_job_duration_seconds", seconds, {{"state", state}});
+  if (event == JobEvent::kSucceed) count_phases(job);
   if (!change.error_code.empty()) {
     parts_.metrics.count("symcell_job_errors_total", {{"code", change.error_code}});
   }

@@ -22,6 +22,8 @@
 #include <vector>
 
 #include "core/base/execution_context.hpp"
+#include "core/model/mesh_options.hpp"
+#include "server/base/clock.hpp"
 #include "server/base/fault_archive.hpp"
 #include "server/base/log.hpp"
 #include "server/base/metrics.hpp"
@@ -46,6 +48,8 @@ struct RunnerParts {
 class JobRunner {
  public:
   JobRunner(RunnerParts parts, std::size_t workers);
+  // What it counts; before it is made.
+  static void declare_metrics(Metrics& metrics);
   // Stops, and waits for whatever made stop() return false.
   ~JobRunner();
 
@@ -62,6 +66,8 @@ class JobRunner {
 
   [[nodiscard]] std::optional<Progress> progress(std::string_view id) const;
   [[nodiscard]] std::size_t running() const;
+  // Jobs that run for longer than their time limit and what a kill may take.
+  [[nodiscard]] std::size_t overdue() const;
   [[nodiscard]] std::size_t workers() const { return workers_; }
 
   // Starts no more jobs, gives those that run `grace`, then cancels and requeues them.
@@ -71,8 +77,10 @@ class JobRunner {
  private:
   struct Running {
     ExecutionContext context;
-    std::int64_t started_steady_ms = 0;  // of the worker's thread
-    std::atomic<bool> requeue{false};    // cancelled because the server stops, not by the user
+    std::int32_t attempt = 0;
+    std::int64_t started_steady_ms = steady_ms();
+    std::atomic<double> limit_s{kInfinity};
+    std::atomic<bool> requeue{false};  // cancelled because the server stops, not by the user
   };
 
   void work();
@@ -80,7 +88,7 @@ class JobRunner {
   [[nodiscard]] bool wait_for_work(std::uint64_t seen);
   [[nodiscard]] std::optional<Job> claim();
   // Makes a claimed job cancellable.
-  std::shared_ptr<Running> enter(const std::string& id);
+  std::shared_ptr<Running> enter(const Job& job);
   void run(const Job& job);
   void remove_files_if_deleted(const std::string& id);
   void execute(const Job& job, Running& running);
@@ -89,8 +97,12 @@ class JobRunner {
   [[nodiscard]] bool persist(const std::string& id, const std::function<void()>& work);
   void count_lost_worker(const std::string& id);
   // Moves the results to their names.
-  [[nodiscard]] bool publish(const std::string& id);
+  [[nodiscard]] bool publish(const Job& job);
   [[nodiscard]] Result<void> run_engine(const Job& job, Running& running);
+  void count_phases(const Job& job);
+  // Of a shared store: tells it which runs are alive, and hears which of them are to end.
+  void keep_runs();
+  void keep_runs_once();
   void keep_fault(const Job& job, const Error& error);
   void settle(const Job& job, Running& running, const Result<void>& result);
 
@@ -109,6 +121,7 @@ class JobRunner {
   bool stopping_ = false;
 
   std::vector<std::thread> threads_;
+  std::thread keeper_;
 };
 
 }  // namespace symcell::server

@@ -1,7 +1,6 @@
 #include "server/jobs/sqlite_job_store.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <sqlite3.h>
 
 #include <algorithm>
 #include <chrono>
@@ -25,7 +24,19 @@ constexpr std::chrono::milliseconds kHealthPatience{250};
 constexpr const char* kColumns =
     "sequence, id, state, created_ms, started_ms, finished_ms, model_format, model_name, "
     "options_json, error_code, error_json, model_bytes, result_bytes, lost_workers, "
-    "finished_clock_ms, model_sha256, statistics_sha256, client, weight, attempt";
+    "finished_clock_ms, model_sha256, statistics_sha256, client, weight, attempt, "
+    "owner, most_running, model_kept, request_id, traceparent, webhook";
+
+// The waiting job whose turn it is, of those whose client may run one more.
+constexpr const char* kWhoseTurn =
+    " FROM jobs AS j INDEXED BY jobs_waiting WHERE j.state = 'queued' AND (j.most_running = 0 OR "
+    "j.most_running > (SELECT COUNT(*) FROM jobs AS r INDEXED BY jobs_running_by_client "
+    "WHERE r.state = 'running' AND r.client = j.client)) ORDER BY j.turn, j.sequence LIMIT 1";
+
+std::int64_t day_of(std::int64_t ms) {
+  constexpr std::int64_t kDayMs = std::int64_t{24} * 3600 * 1000;
+  return ms / kDayMs;
+}
 
 std::string format_name(ModelFormat format) {
   return std::string(model_format_info(format).name);
@@ -65,6 +76,12 @@ Job read_job(SQLite::Statement& row) {
   job.client = row.getColumn(17).getString();
   job.weight = row.getColumn(18).getInt();
   job.attempt = row.getColumn(19).getInt();
+  job.owner = row.getColumn(20).getString();
+  job.most_running = row.getColumn(21).getInt64();
+  job.model_kept = row.getColumn(22).getInt() != 0;
+  job.request_id = row.getColumn(23).getString();
+  job.traceparent = row.getColumn(24).getString();
+  job.webhook = row.getColumn(25).getString();
   return job;
 }
 
@@ -72,26 +89,6 @@ std::vector<Job> read_jobs(SQLite::Statement& query) {
   std::vector<Job> jobs;
   while (query.executeStep()) jobs.push_back(read_job(query));
   return jobs;
-}
-
-StoreError::Kind kind_of(const SQLite::Exception& exception) {
-  switch (exception.getErrorCode()) {
-    case SQLITE_BUSY:
-    case SQLITE_LOCKED: return StoreError::Kind::kBusy;
-    case SQLITE_FULL: return StoreError::Kind::kFull;
-    case SQLITE_CORRUPT:
-    case SQLITE_NOTADB: return StoreError::Kind::kDamaged;
-    default: return StoreError::Kind::kOther;
-  }
-}
-
-template <class Work>
-auto translated(const Work& work) {
-  try {
-    return work();
-  } catch (const SQLite::Exception& exception) {
-    throw StoreError(kind_of(exception), exception.what());
-  }
 }
 
 }  // namespace
@@ -122,13 +119,13 @@ struct SqliteJobStore::Impl {
   template <class Work>
   auto write(const Work& work) {
     const std::lock_guard lock(writing);
-    return translated([&] { return work(database); });
+    return translate_sqlite_errors([&] { return work(database); });
   }
   // The same with the connection that reads: a write that waits for a lock holds nobody up.
   template <class Work>
   auto read(const Work& work) {
     const std::lock_guard lock(reading);
-    return translated([&] { return work(reader); });
+    return translate_sqlite_errors([&] { return work(reader); });
   }
 
   void set_property(const char* name, std::int64_t value) {
@@ -197,13 +194,39 @@ struct SqliteJobStore::Impl {
     return totals.by_state[static_cast<std::size_t>(JobState::kQueued)];
   }
 
-  static ClientUsage usage(SQLite::Database& database, std::string_view client) {
-    SQLite::Statement query(database,
-                            "SELECT COUNT(*) FROM jobs INDEXED BY jobs_waiting_by_client "
-                            "WHERE state = 'queued' AND client = ?");
+  static ClientUsage usage(SQLite::Database& database,
+                           std::string_view client,
+                           std::int64_t time_ms) {
+    SQLite::Statement query(
+        database,
+        "SELECT (SELECT COUNT(*) FROM jobs INDEXED BY jobs_waiting_by_client "
+        "WHERE state = 'queued' AND client = ?1), "
+        "(SELECT COUNT(*) FROM jobs INDEXED BY jobs_running_by_client "
+        "WHERE state = 'running' AND client = ?1), "
+        "COALESCE((SELECT bytes FROM key_usage WHERE owner = ?1 AND day = ?2), 0), "
+        "COALESCE((SELECT jobs FROM key_usage WHERE owner = ?1 AND day = ?2), 0)");
     query.bind(1, std::string(client));
+    query.bind(2, day_of(time_ms));
     query.executeStep();
-    return {.queued = query.getColumn(0).getInt64()};
+    return {.queued = query.getColumn(0).getInt64(),
+            .running = query.getColumn(1).getInt64(),
+            .bytes_today = query.getColumn(2).getInt64(),
+            .jobs_today = query.getColumn(3).getInt64()};
+  }
+
+  // Counts the job's bytes; false: that would be more than the day has.
+  static bool spend(SQLite::Database& database, const Job& job, std::int64_t bytes_per_day) {
+    const ClientUsage used = usage(database, job.owner, job.created_ms);
+    if (job.model_bytes > bytes_per_day - used.bytes_today) return false;
+    SQLite::Statement count(database,
+                            "INSERT INTO key_usage (owner, day, jobs, bytes) VALUES (?, ?, 1, ?) "
+                            "ON CONFLICT (owner, day) DO UPDATE SET jobs = jobs + 1, "
+                            "bytes = bytes + excluded.bytes");
+    count.bind(1, job.owner);
+    count.bind(2, day_of(job.created_ms));
+    count.bind(3, job.model_bytes);
+    count.exec();
+    return true;
   }
 
   // Turns are times of a virtual clock (start-time fair queueing): it stands at the turn of the job
@@ -240,8 +263,10 @@ struct SqliteJobStore::Impl {
 
   static std::optional<InsertOutcome> known_key(SQLite::Database& database,
                                                 const IdempotencyKey& key) {
-    SQLite::Statement query(database, "SELECT digest, job_id FROM idempotency_keys WHERE key = ?");
-    query.bind(1, key.key);
+    SQLite::Statement query(
+        database, "SELECT digest, job_id FROM idempotency_keys WHERE owner = ? AND key = ?");
+    query.bind(1, key.owner);
+    query.bind(2, key.key);
     if (!query.executeStep()) return std::nullopt;
     const bool same = query.getColumn(0).getString() == key.digest;
     const auto job = find(database, query.getColumn(1).getString());
@@ -267,13 +292,17 @@ InsertOutcome SqliteJobStore::insert(const Job& job,
       if (auto known = Impl::known_key(database, *key)) return *known;
     }
     if (impl_->queued() >= admission.queued ||
-        Impl::usage(database, job.client).queued >= admission.queued_of_client) {
+        Impl::usage(database, job.client, job.created_ms).queued >= admission.queued_of_client) {
       return {InsertResult::kQueueFull, {}};
+    }
+    if (!job.owner.empty() && !Impl::spend(database, job, admission.bytes_per_day)) {
+      return {InsertResult::kBytesSpent, {}};
     }
     SQLite::Statement insert(database,
                              "INSERT INTO jobs (id, state, created_ms, model_format, model_name, "
-                             "options_json, model_bytes, model_sha256, client, weight, turn) "
-                             "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+                             "options_json, model_bytes, model_sha256, client, weight, turn, "
+                             "owner, most_running, request_id, traceparent, webhook) "
+                             "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     insert.bind(1, job.id);
     insert.bind(2, std::string(job_state_name(job.state)));
     insert.bind(3, job.created_ms);
@@ -285,15 +314,22 @@ InsertOutcome SqliteJobStore::insert(const Job& job,
     insert.bind(9, job.client);
     insert.bind(10, job.weight);
     insert.bind(11, Impl::next_turn(database, job.client, job.weight));
+    insert.bind(12, job.owner);
+    insert.bind(13, job.most_running);
+    insert.bind(14, job.request_id);
+    insert.bind(15, job.traceparent);
+    insert.bind(16, job.webhook);
     insert.exec();
     Job stored = job;
     stored.sequence = database.getLastInsertRowid();
     if (key) {
       SQLite::Statement remember(
-          database, "INSERT INTO idempotency_keys (key, digest, job_id) VALUES (?, ?, ?)");
-      remember.bind(1, key->key);
-      remember.bind(2, key->digest);
-      remember.bind(3, job.id);
+          database,
+          "INSERT INTO idempotency_keys (owner, key, digest, job_id) VALUES (?, ?, ?, ?)");
+      remember.bind(1, key->owner);
+      remember.bind(2, key->key);
+      remember.bind(3, key->digest);
+      remember.bind(4, job.id);
       remember.exec();
     }
     transaction.commit();
@@ -302,17 +338,16 @@ InsertOutcome SqliteJobStore::insert(const Job& job,
   });
 }
 
-ClientUsage SqliteJobStore::usage(std::string_view client) {
-  return impl_->read([&](SQLite::Database& database) { return Impl::usage(database, client); });
+ClientUsage SqliteJobStore::usage(std::string_view client, std::int64_t time_ms) {
+  return impl_->read(
+      [&](SQLite::Database& database) { return Impl::usage(database, client, time_ms); });
 }
 
 std::optional<Job> SqliteJobStore::claim(std::int64_t time_ms) {
   return impl_->write([&](SQLite::Database& database) -> std::optional<Job> {
     if (impl_->queued() == 0) return std::nullopt;
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
-    SQLite::Statement query(database, std::string("SELECT ") + kColumns +
-                                          " FROM jobs INDEXED BY jobs_waiting WHERE state = "
-                                          "'queued' ORDER BY turn, sequence LIMIT 1");
+    SQLite::Statement query(database, std::string("SELECT ") + kColumns + kWhoseTurn);
     if (!query.executeStep()) return std::nullopt;
     Job job = read_job(query);
     job.state = JobState::kRunning;
@@ -343,11 +378,14 @@ std::optional<Job> SqliteJobStore::find(std::string_view id) {
 std::vector<Job> SqliteJobStore::list(const JobFilter& filter) {
   std::string sql = std::string("SELECT ") + kColumns + " FROM jobs WHERE sequence < ?";
   if (filter.state) sql += " AND state = ?";
+  if (filter.owner) sql += " AND owner = ?";
   sql += " ORDER BY sequence DESC LIMIT " + std::to_string(filter.limit);
   return impl_->read([&](SQLite::Database& database) {
     SQLite::Statement query(database, sql);
     query.bind(1, filter.before_sequence.value_or(std::numeric_limits<std::int64_t>::max()));
-    if (filter.state) query.bind(2, std::string(job_state_name(*filter.state)));
+    int next = 2;
+    if (filter.state) query.bind(next++, std::string(job_state_name(*filter.state)));
+    if (filter.owner) query.bind(next, *filter.owner);
     return read_jobs(query);
   });
 }
@@ -413,10 +451,94 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
     update.bind(9, job->attempt);
     update.bind(10, job->id);
     update.exec();
+    if (is_finished(*next) && !job->webhook.empty()) {
+      SQLite::Statement tell(database,
+                             "INSERT INTO deliveries (job_id, tries, due_ms) VALUES (?, 0, ?)");
+      tell.bind(1, job->id);
+      tell.bind(2, impl_->clock_ms());
+      tell.exec();
+    }
     transaction.commit();
     impl_->count(state_before, -1, 0);
     impl_->count(job->state, 1, job->result_bytes - bytes_before);
     return job;
+  });
+}
+
+std::optional<std::int64_t> SqliteJobStore::oldest_waiting_ms() {
+  return impl_->read([&](SQLite::Database& database) -> std::optional<std::int64_t> {
+    SQLite::Statement query(
+        database, "SELECT created_ms FROM jobs WHERE state = 'queued' ORDER BY sequence LIMIT 1");
+    if (!query.executeStep()) return std::nullopt;
+    return query.getColumn(0).getInt64();
+  });
+}
+
+std::vector<Job> SqliteJobStore::spent_models(std::int64_t before_clock_ms, std::size_t limit) {
+  return impl_->read([&](SQLite::Database& database) {
+    SQLite::Statement query(
+        database, std::string("SELECT ") + kColumns +
+                      " FROM jobs INDEXED BY jobs_with_spent_models WHERE state IN ('failed', "
+                      "'cancelled') AND model_kept = 1 AND finished_clock_ms < ? ORDER BY "
+                      "finished_clock_ms LIMIT " +
+                      std::to_string(limit));
+    query.bind(1, before_clock_ms);
+    return read_jobs(query);
+  });
+}
+
+void SqliteJobStore::forget_model(std::string_view id) {
+  impl_->write([&](SQLite::Database& database) {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    const auto job = Impl::find(database, id);
+    if (!job || !job->model_kept) return;
+    SQLite::Statement update(database,
+                             "UPDATE jobs SET model_kept = 0, model_bytes = 0 WHERE id = ?");
+    update.bind(1, std::string(id));
+    update.exec();
+    transaction.commit();
+    impl_->count(job->state, 0, -job->model_bytes);
+  });
+}
+
+std::optional<Delivery> SqliteJobStore::claim_delivery(std::chrono::milliseconds patience) {
+  return impl_->write([&](SQLite::Database& database) -> std::optional<Delivery> {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::DEFERRED);
+    SQLite::Statement query(
+        database,
+        "SELECT d.job_id, j.webhook, d.tries FROM deliveries AS d JOIN jobs AS j "
+        "ON j.id = d.job_id WHERE d.due_ms <= ? ORDER BY d.due_ms LIMIT 1");
+    query.bind(1, impl_->clock_ms());
+    if (!query.executeStep()) return std::nullopt;
+    Delivery delivery{query.getColumn(0).getString(), query.getColumn(1).getString(),
+                      query.getColumn(2).getInt()};
+    query.reset();
+    SQLite::Statement update(database, "UPDATE deliveries SET due_ms = ? WHERE job_id = ?");
+    update.bind(1, impl_->clock_ms() + patience.count());
+    update.bind(2, delivery.job_id);
+    update.exec();
+    transaction.commit();
+    return delivery;
+  });
+}
+
+void SqliteJobStore::delivered(std::string_view job_id) {
+  impl_->write([&](SQLite::Database& database) {
+    SQLite::Statement done(database, "DELETE FROM deliveries WHERE job_id = ?");
+    done.bind(1, std::string(job_id));
+    done.exec();
+  });
+}
+
+void SqliteJobStore::delivery_failed(std::string_view job_id,
+                                     std::optional<std::chrono::milliseconds> pause) {
+  if (!pause) return delivered(job_id);
+  impl_->write([&](SQLite::Database& database) {
+    SQLite::Statement again(database,
+                            "UPDATE deliveries SET tries = tries + 1, due_ms = ? WHERE job_id = ?");
+    again.bind(1, impl_->clock_ms() + pause->count());
+    again.bind(2, std::string(job_id));
+    again.exec();
   });
 }
 
@@ -460,6 +582,11 @@ std::int64_t SqliteJobStore::tidy(std::int64_t mark) {
     SQLite::Statement forget(database, "DELETE FROM erased WHERE rowid <= ?");
     forget.bind(1, mark);
     forget.exec();
+    // Days that no limit looks at any more.
+    constexpr std::int64_t kDaysKept = 40;
+    SQLite::Statement old(database, "DELETE FROM key_usage WHERE day < ?");
+    old.bind(1, day_of(impl_->clocks.wall()) - kDaysKept);
+    old.exec();
     impl_->note_clock();
     const std::int64_t newest =
         database.execAndGet("SELECT COALESCE(MAX(rowid), 0) FROM erased").getInt64();
@@ -483,7 +610,7 @@ void SqliteJobStore::check_health() {
   });
   std::unique_lock lock(impl_->writing, kHealthPatience);
   if (!lock) throw StoreError(StoreError::Kind::kBusy, "writes to the job database do not end");
-  translated([&] {
+  translate_sqlite_errors([&] {
     SQLite::Database& database = impl_->database;
     // Whoever asks wants to know now, not to wait until it is well again.
     database.setBusyTimeout(0);

@@ -71,6 +71,60 @@ CREATE INDEX jobs_waiting ON jobs (turn, sequence) WHERE state = 'queued';
 CREATE INDEX jobs_waiting_by_client ON jobs (client, turn) WHERE state = 'queued';
 CREATE INDEX jobs_running ON jobs (turn) WHERE state = 'running';
 )sql",
+    // Keys of clients. Idempotency keys are their client's.
+    R"sql(
+CREATE TABLE api_keys (
+  id TEXT PRIMARY KEY,
+  name TEXT NOT NULL,
+  hash TEXT NOT NULL,
+  scopes TEXT NOT NULL,
+  created_ms INTEGER NOT NULL,
+  revoked_ms INTEGER,
+  queued INTEGER NOT NULL,
+  running INTEGER NOT NULL,
+  bytes_per_day INTEGER NOT NULL,
+  requests_per_minute INTEGER NOT NULL,
+  priority INTEGER NOT NULL
+) STRICT;
+CREATE TABLE key_usage (
+  owner TEXT NOT NULL,
+  day INTEGER NOT NULL,
+  jobs INTEGER NOT NULL,
+  bytes INTEGER NOT NULL,
+  PRIMARY KEY (owner, day)
+) STRICT;
+ALTER TABLE jobs ADD COLUMN owner TEXT NOT NULL DEFAULT '';
+ALTER TABLE jobs ADD COLUMN most_running INTEGER NOT NULL DEFAULT 0;
+CREATE INDEX jobs_by_owner ON jobs (owner, sequence);
+CREATE INDEX jobs_by_owner_and_state ON jobs (owner, state, sequence);
+CREATE INDEX jobs_running_by_client ON jobs (client) WHERE state = 'running';
+CREATE TABLE owned_keys (
+  owner TEXT NOT NULL,
+  key TEXT NOT NULL,
+  digest TEXT NOT NULL,
+  job_id TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE,
+  PRIMARY KEY (owner, key)
+) STRICT;
+INSERT INTO owned_keys SELECT '', key, digest, job_id FROM idempotency_keys;
+DROP TABLE idempotency_keys;
+ALTER TABLE owned_keys RENAME TO idempotency_keys;
+CREATE INDEX idempotency_keys_by_job ON idempotency_keys (job_id);
+)sql",
+    // Models that go before their jobs, where a job came from, and who is told of its end.
+    R"sql(
+ALTER TABLE jobs ADD COLUMN model_kept INTEGER NOT NULL DEFAULT 1;
+ALTER TABLE jobs ADD COLUMN request_id TEXT NOT NULL DEFAULT '';
+ALTER TABLE jobs ADD COLUMN traceparent TEXT NOT NULL DEFAULT '';
+ALTER TABLE jobs ADD COLUMN webhook TEXT NOT NULL DEFAULT '';
+CREATE INDEX jobs_with_spent_models ON jobs (finished_clock_ms)
+  WHERE state IN ('failed', 'cancelled') AND model_kept = 1;
+CREATE TABLE deliveries (
+  job_id TEXT PRIMARY KEY REFERENCES jobs (id) ON DELETE CASCADE,
+  tries INTEGER NOT NULL,
+  due_ms INTEGER NOT NULL
+) STRICT;
+CREATE INDEX deliveries_by_time ON deliveries (due_ms);
+)sql",
 };
 
 DatabaseFinding examine(SQLite::Database& database) {
@@ -115,6 +169,22 @@ void migrate_job_database(SQLite::Database& database) {
     database.exec(kMigrations[static_cast<std::size_t>(step)]);
     database.exec("PRAGMA user_version = " + std::to_string(step + 1));
     transaction.commit();
+  }
+}
+
+bool has_newest_schema(SQLite::Database& database) {
+  return database.execAndGet("PRAGMA user_version").getInt() ==
+         static_cast<int>(kMigrations.size());
+}
+
+StoreError::Kind store_error_kind(const SQLite::Exception& exception) {
+  switch (exception.getErrorCode()) {
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED: return StoreError::Kind::kBusy;
+    case SQLITE_FULL: return StoreError::Kind::kFull;
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB: return StoreError::Kind::kDamaged;
+    default: return StoreError::Kind::kOther;
   }
 }
 

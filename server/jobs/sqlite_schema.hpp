@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <string>
 
+#include "server/jobs/job_store.hpp"
+
 namespace symcell::server {
 
 // How long a statement waits for another process that holds the database, a backup for instance.
@@ -39,5 +41,18 @@ struct DatabaseFinding {
 const std::filesystem::path& create_job_database(const std::filesystem::path& file);
 // Throws std::runtime_error if the schema is newer than this program.
 void migrate_job_database(SQLite::Database& database);
+[[nodiscard]] bool has_newest_schema(SQLite::Database& database);
+
+[[nodiscard]] StoreError::Kind store_error_kind(const SQLite::Exception& exception);
+
+// What `work` returns; exceptions of SQLite become StoreError.
+template <class Work>
+auto translate_sqlite_errors(const Work& work) {
+  try {
+    return work();
+  } catch (const SQLite::Exception& exception) {
+    throw StoreError(store_error_kind(exception), exception.what());
+  }
+}
 
 }  // namespace symcell::server

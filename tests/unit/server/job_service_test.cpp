@@ -76,7 +76,8 @@ TEST_F(JobServiceTest, AWaitingJobIsCancelledAtOnce) {
 
 TEST_F(JobServiceTest, ARunningJobIsCancelledSoon) {
   const std::string id = occupy_worker();
-  EXPECT_TRUE(eventually([&] { return service_.jobs->progress(id)->elements == 42U; }));
+  EXPECT_TRUE(eventually(
+      [&] { return service_.jobs->progress(*service_.jobs->find(id))->elements == 42U; }));
   service_.jobs->cancel(id);
   EXPECT_TRUE(service_.reaches(id, JobState::kCancelled));
 }

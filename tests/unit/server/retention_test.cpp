@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "server/jobs/sqlite_job_store.hpp"
+#include "server/jobs/staged_model.hpp"
 #include "tests/support/test_files.hpp"
 
 namespace symcell::server {
@@ -39,6 +40,30 @@ class RetentionTest : public ::testing::Test {
 TEST_F(RetentionTest, NoRulesKeepEverything) {
   add_finished("a", 0);
   EXPECT_EQ(apply({}), 0U);
+}
+
+TEST_F(RetentionTest, ModelsOfJobsWithoutAResultGoBeforeTheirJobs) {
+  add_finished("succeeded", 0);
+  for (const char* id : {"failed", "late"}) {
+    Job job;
+    job.id = id;
+    job.model_bytes = 10;
+    store_.insert(job, std::nullopt, {});
+    steady_ = id == std::string("late") ? 90 * kHourMs : 0;
+    store_.apply(id, JobEvent::kFail, {.time_ms = 1});
+    symcell::test::write_file(folder_ / (std::string("arrived") + id), "model");
+    files_.adopt_model(folder_ / (std::string("arrived") + id), id);
+    settle_model(files_, id);
+  }
+  steady_ = 100 * kHourMs;
+  const RetentionRules rules{.spent_model_age_s = 24L * 3600};
+  EXPECT_EQ(remove_spent_models(rules, store_, files_), 1U);
+  EXPECT_FALSE(std::filesystem::exists(files_.model("failed")));
+  EXPECT_TRUE(std::filesystem::exists(files_.model("late")));
+  EXPECT_FALSE(store_.find("failed")->model_kept);
+  EXPECT_TRUE(store_.find("succeeded")->model_kept);
+  EXPECT_EQ(store_.totals().bytes, 110);
+  EXPECT_EQ(remove_spent_models(rules, store_, files_), 0U);
 }
 
 TEST_F(RetentionTest, OldJobsGo) {

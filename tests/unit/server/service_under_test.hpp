@@ -12,17 +12,9 @@
 
 namespace symcell::server::test {
 
-inline void declare_job_metrics(Metrics& metrics) {
-  metrics.declare_histogram("symcell_job_duration_seconds", "", {1});
-  metrics.declare_counter("symcell_job_errors_total", "");
-  metrics.declare_counter("symcell_job_write_retries_total", "");
-  metrics.declare_counter("symcell_internal_errors_total", "");
-}
-
 class ServiceUnderTest {
  public:
   ServiceUnderTest() {
-    declare_job_metrics(metrics);
     limits.workers = 1;
     limits.queue_limit = 2;
     open();

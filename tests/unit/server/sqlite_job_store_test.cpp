@@ -25,153 +25,6 @@ class SqliteJobStoreTest : public ::testing::Test {
   SqliteJobStore store_{folder_ / "jobs.sqlite"};
 };
 
-TEST_F(SqliteJobStoreTest, AJobComesBackAsItWasStored) {
-  store_.insert(new_job("a"), std::nullopt, {});
-  const auto job = store_.find("a");
-  ASSERT_TRUE(job);
-  EXPECT_EQ(job->state, JobState::kQueued);
-  EXPECT_EQ(job->created_ms, 1000);
-  EXPECT_FALSE(job->started_ms);
-  EXPECT_EQ(job->model_format, ModelFormat::kPoly);
-  EXPECT_EQ(job->model_name, "part.poly");
-  EXPECT_EQ(job->options_json, "{\"fold\":3}");
-  EXPECT_EQ(job->model_bytes, 10);
-  EXPECT_FALSE(store_.find("b"));
-}
-
-TEST_F(SqliteJobStoreTest, EventsChangeStateAndTimes) {
-  store_.insert(new_job("a"), std::nullopt, {});
-  EXPECT_EQ(store_.apply("a", JobEvent::kStart, {.time_ms = 2000})->started_ms, 2000);
-  const auto failed = store_.apply(
-      "a", JobEvent::kFail, {.time_ms = 3000, .error_code = "time_limit", .error_json = "{}"});
-  ASSERT_TRUE(failed);
-  EXPECT_EQ(failed->state, JobState::kFailed);
-  const auto stored = store_.find("a");
-  EXPECT_EQ(stored->started_ms, 2000);
-  EXPECT_EQ(stored->finished_ms, 3000);
-  EXPECT_EQ(stored->error_code, "time_limit");
-}
-
-Job job_of(const std::string& id, const std::string& client, int weight = 1) {
-  Job job = new_job(id);
-  job.client = client;
-  job.weight = weight;
-  return job;
-}
-
-TEST_F(SqliteJobStoreTest, ClientsTakeTurns) {
-  for (const char* id : {"a1", "a2", "a3", "a4"}) store_.insert(job_of(id, "a"), std::nullopt, {});
-  EXPECT_EQ(store_.claim(1)->id, "a1");
-  store_.insert(job_of("b1", "b"), std::nullopt, {});
-  store_.insert(job_of("b2", "b"), std::nullopt, {});
-  store_.insert(job_of("c1", "c"), std::nullopt, {});
-  store_.apply("a3", JobEvent::kCancel, {.time_ms = 1});
-  std::string order;
-  while (const auto job = store_.claim(1)) order += job->id + " ";
-  EXPECT_EQ(order, "a2 b1 c1 b2 a4 ");
-}
-
-TEST_F(SqliteJobStoreTest, AClientOfWeightTwoHasTwoTurns) {
-  for (const char* id : {"a1", "a2", "a3"}) store_.insert(job_of(id, "a"), std::nullopt, {});
-  for (const char* id : {"b1", "b2", "b3", "b4"}) {
-    store_.insert(job_of(id, "b", 2), std::nullopt, {});
-  }
-  std::string order;
-  while (const auto job = store_.claim(1)) order += job->client;
-  EXPECT_EQ(order, "ababbab");  // after the first, two of b for one of a
-}
-
-TEST_F(SqliteJobStoreTest, AJobIsStartedOnceAndARunThatWasGivenUpWritesNothing) {
-  store_.insert(new_job("a"), std::nullopt, {});
-  const auto first = store_.claim(2000);
-  ASSERT_TRUE(first);
-  EXPECT_EQ(first->state, JobState::kRunning);
-  EXPECT_EQ(first->started_ms, 2000);
-  EXPECT_EQ(first->attempt, 1);
-  EXPECT_FALSE(store_.claim(2000));
-  ASSERT_TRUE(store_.apply("a", JobEvent::kRequeue, {.time_ms = 1, .attempt = 1}));
-  EXPECT_EQ(store_.claim(3000)->attempt, 2);
-  EXPECT_FALSE(store_.apply("a", JobEvent::kSucceed, {.time_ms = 1, .attempt = 1}));
-  EXPECT_EQ(store_.find("a")->state, JobState::kRunning);
-  EXPECT_TRUE(store_.apply("a", JobEvent::kSucceed, {.time_ms = 1, .attempt = 2}));
-}
-
-TEST_F(SqliteJobStoreTest, AFullQueueTakesNothingInAllOrOfAClient) {
-  const Admission two_and_one{2, 1};
-  EXPECT_EQ(store_.insert(job_of("a", "x"), std::nullopt, two_and_one).result,
-            InsertResult::kInserted);
-  EXPECT_EQ(store_.insert(job_of("b", "x"), std::nullopt, two_and_one).result,
-            InsertResult::kQueueFull);
-  EXPECT_EQ(store_.usage("x").queued, 1);
-  EXPECT_EQ(store_.insert(job_of("c", "y"), std::nullopt, two_and_one).result,
-            InsertResult::kInserted);
-  EXPECT_EQ(store_.insert(job_of("d", "z"), std::nullopt, two_and_one).result,
-            InsertResult::kQueueFull);
-  EXPECT_FALSE(store_.find("d"));
-}
-
-TEST_F(SqliteJobStoreTest, ForbiddenEventsChangeNothing) {
-  store_.insert(new_job("a"), std::nullopt, {});
-  EXPECT_FALSE(store_.apply("a", JobEvent::kSucceed, {.time_ms = 1}));
-  EXPECT_FALSE(store_.apply("unknown", JobEvent::kStart, {.time_ms = 1}));
-  EXPECT_EQ(store_.find("a")->state, JobState::kQueued);
-}
-
-TEST_F(SqliteJobStoreTest, LostWorkersAreCountedAcrossRequeues) {
-  store_.insert(new_job("a"), std::nullopt, {});
-  for (int i = 1; i <= 2; ++i) {
-    store_.apply("a", JobEvent::kStart, {.time_ms = 1});
-    store_.count_lost_worker("a");
-    const auto requeued = store_.apply("a", JobEvent::kRequeue, {.time_ms = 1});
-    EXPECT_EQ(requeued->lost_workers, i);
-    EXPECT_FALSE(requeued->started_ms);
-  }
-  EXPECT_EQ(store_.find("a")->lost_workers, 2);
-}
-
-TEST_F(SqliteJobStoreTest, TheSameKeyGivesTheSameJobOrAConflict) {
-  const IdempotencyKey key{"k", "digest"};
-  EXPECT_FALSE(store_.find_key(key));
-  EXPECT_EQ(store_.insert(new_job("a"), key, {}).result, InsertResult::kInserted);
-  const auto replayed = store_.insert(new_job("b"), key, {});
-  EXPECT_EQ(replayed.result, InsertResult::kReplayed);
-  EXPECT_EQ(replayed.job.id, "a");
-  EXPECT_FALSE(store_.find("b"));
-  EXPECT_EQ(store_.insert(new_job("c"), IdempotencyKey{"k", "other"}, {}).result,
-            InsertResult::kConflict);
-  EXPECT_EQ(store_.find_key({"k", "other"})->result, InsertResult::kConflict);
-}
-
-TEST_F(SqliteJobStoreTest, AnErasedJobFreesItsKey) {
-  const IdempotencyKey key{"k", "digest"};
-  store_.insert(new_job("a"), key, {});
-  EXPECT_TRUE(store_.erase("a"));
-  EXPECT_FALSE(store_.erase("a"));
-  EXPECT_FALSE(store_.find_key(key));
-}
-
-TEST_F(SqliteJobStoreTest, ListsNewestFirstByStateInPages) {
-  for (const char* id : {"a", "b", "c", "d"}) store_.insert(new_job(id), std::nullopt, {});
-  store_.apply("b", JobEvent::kCancel, {.time_ms = 1});
-  JobFilter filter;
-  filter.limit = 2;
-  auto page = store_.list(filter);
-  ASSERT_EQ(page.size(), 2U);
-  EXPECT_EQ(page[0].id, "d");
-  EXPECT_EQ(page[1].id, "c");
-  filter.before_sequence = page[1].sequence;
-  page = store_.list(filter);
-  ASSERT_EQ(page.size(), 2U);
-  EXPECT_EQ(page[0].id, "b");
-  EXPECT_EQ(page[1].id, "a");
-  filter = {};
-  filter.state = JobState::kCancelled;
-  EXPECT_EQ(store_.list(filter).size(), 1U);
-  EXPECT_EQ(store_.unfinished().front().id, "a");
-  EXPECT_EQ(store_.unfinished().size(), 3U);
-  EXPECT_EQ(store_.oldest_finished(10).size(), 1U);
-}
-
 TEST_F(SqliteJobStoreTest, TotalsCountStatesAndBytes) {
   store_.insert(new_job("a"), std::nullopt, {});
   store_.insert(new_job("b"), std::nullopt, {});
@@ -227,7 +80,10 @@ TEST_F(SqliteJobStoreTest, NothingScansTheTable) {
         "SELECT MAX(turn) FROM jobs INDEXED BY jobs_waiting_by_client WHERE state = 'queued' AND "
         "client = 'x'",
         "SELECT MAX(turn) FROM jobs INDEXED BY jobs_running WHERE state = 'running'",
-        "SELECT digest, job_id FROM idempotency_keys WHERE key = 'a'"}) {
+        "SELECT digest, job_id FROM idempotency_keys WHERE owner = '' AND key = 'a'",
+        "SELECT * FROM jobs WHERE sequence < 9 AND owner = 'x' ORDER BY sequence DESC LIMIT 9",
+        "SELECT * FROM jobs WHERE sequence < 9 AND state = 'y' AND owner = 'x' ORDER BY sequence "
+        "DESC LIMIT 9"}) {
     SQLite::Statement plan(database, std::string("EXPLAIN QUERY PLAN ") + statement);
     while (plan.executeStep()) {
       const std::string step = plan.getColumn(3).getString();
