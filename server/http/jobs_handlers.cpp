@@ -211,7 +211,7 @@ void list_jobs(Call& call, ServiceContext& context) {
   const Caller& caller = call.exchange.caller;
   if (!caller.sees_all) filter.owner = caller.owner();
   // For administrators; others see their own jobs whatever they ask for.
-  if (caller.sees_all && call.request.has_param("key")) filter.owner = call.parameter("key");
+  if (caller.sees_all && call.has_parameter("key")) filter.owner = call.parameter("key");
   const std::size_t limit = filter.limit;
   ++filter.limit;  // one more shows whether there is another page
   auto jobs = context.jobs.list(filter);

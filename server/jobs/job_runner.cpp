@@ -26,6 +26,9 @@ constexpr std::chrono::seconds kPollInterval{5};
 constexpr std::chrono::milliseconds kKeepInterval{1000};
 // What a job may take beyond its time limit: the engine kills its process within a second.
 constexpr double kOverdueSeconds = 60;
+// Between two runs of a job whose results the disk did not take: each costs the whole work.
+constexpr std::chrono::milliseconds kFirstMeshPause{500};
+constexpr std::chrono::milliseconds kLongestMeshPause{30'000};
 // Between two tries of what the store or the disk refused.
 constexpr std::chrono::milliseconds kFirstPause{50};
 constexpr std::chrono::milliseconds kLongestPause{1000};
@@ -380,7 +383,28 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
     return fail(ErrorCode::kInternal,
                 std::string(damaged.what()) + "; the server's disk is at fault: submit it again");
   }
-  SYMCELL_TRY(parts_.engine.run(work, running.context));
+  // Again while the disk takes nothing that the engine writes.
+  for (std::chrono::milliseconds pause = kFirstMeshPause;;
+       pause = std::min(2 * pause, kLongestMeshPause)) {
+    const Result<void> meshed = parts_.engine.run(work, running.context);
+    if (meshed) break;
+    if (meshed.error().code != ErrorCode::kWriteFailed) return meshed;
+    parts_.metrics.count("symcell_job_write_retries_total");
+    parts_.logger.warning("job_write_failed",
+                          {{"job", job.id}, {"what", std::string_view(meshed.error().message)}});
+    // Part of what the disk has no room for.
+    std::error_code ignored;
+    std::filesystem::remove(work.cell, ignored);
+    std::filesystem::remove(work.statistics, ignored);
+    {
+      std::unique_lock lock(mutex_);
+      if (stopped_.wait_for(lock, pause, [this] { return stopping_; })) {
+        running.requeue = true;
+        return fail(ErrorCode::kCancelled, "the server stops");
+      }
+    }
+    SYMCELL_TRY(running.context.check());
+  }
   if (!publish(job)) {
     running.requeue = true;
     return fail(ErrorCode::kCancelled, "the server stops");

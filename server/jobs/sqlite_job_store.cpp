@@ -38,6 +38,24 @@ std::int64_t day_of(std::int64_t ms) {
   return ms / kDayMs;
 }
 
+// Commits that a power failure may undo: a start that is lost leaves its job queued, as a start of the
+// server would anyhow. Whatever is committed after it makes it last.
+class Unsynchronised {
+ public:
+  explicit Unsynchronised(SQLite::Database& database) : database_(database) {
+    database_.exec("PRAGMA synchronous = NORMAL");
+  }
+  ~Unsynchronised() {
+    // Cannot fail: it sets a flag of the connection.
+    database_.tryExec("PRAGMA synchronous = FULL");
+  }
+  Unsynchronised(const Unsynchronised&) = delete;
+  Unsynchronised& operator=(const Unsynchronised&) = delete;
+
+ private:
+  SQLite::Database& database_;
+};
+
 std::string format_name(ModelFormat format) {
   return std::string(model_format_info(format).name);
 }
@@ -346,6 +364,7 @@ ClientUsage SqliteJobStore::usage(std::string_view client, std::int64_t time_ms)
 std::optional<Job> SqliteJobStore::claim(std::int64_t time_ms) {
   return impl_->write([&](SQLite::Database& database) -> std::optional<Job> {
     if (impl_->queued() == 0) return std::nullopt;
+    const Unsynchronised fast(database);
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
     SQLite::Statement query(database, std::string("SELECT ") + kColumns + kWhoseTurn);
     if (!query.executeStep()) return std::nullopt;
