@@ -7,14 +7,16 @@ build_packages=(
   cmake g++ ninja-build pkg-config
   libcgal-dev libexpected-dev libtet1.5-dev
   libdxflib-dev libpugixml-dev nlohmann-json3-dev zlib1g-dev
-  libboost-dev libcli11-dev libcpp-httplib-dev libseccomp-dev libspdlog-dev libsqlitecpp-dev libssl-dev
+  libboost-dev libcli11-dev libcpp-httplib-dev libpqxx-dev libseccomp-dev libsodium-dev libspdlog-dev
+  libsqlitecpp-dev libssl-dev prometheus-cpp-dev
   libgtest-dev
 )
 # Bundles the pages. Other distributions of node bring npm along, and clash with Debian's.
 command -v npm > /dev/null || build_packages+=(npm)
 # What tests run.
 test_packages=(
-  calculix-ccx chromium curl gmsh python3 python3-matplotlib python3-meshio python3-numpy python3-scipy python3-yaml)
+  calculix-ccx chromium curl gmsh openssl postgresql python3 python3-matplotlib python3-meshio python3-numpy
+  python3-scipy python3-yaml)
 # What the checks of .ci/run use beyond that.
 check_packages=(clang-format-14 clang-tidy-14)
 # What .ci/nightly uses: clang with libFuzzer.

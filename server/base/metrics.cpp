@@ -1,141 +1,105 @@
 #include "server/base/metrics.hpp"
 
+#include <prometheus/counter.h>
+#include <prometheus/gauge.h>
+#include <prometheus/histogram.h>
+#include <prometheus/registry.h>
+#include <prometheus/text_serializer.h>
+
 #include <algorithm>
-#include <array>
-#include <charconv>
+#include <map>
+#include <mutex>
 
 #include "core/base/assert.hpp"
 
 namespace symcell::server {
 namespace {
 
-void append_number(std::string& text, double value) {
-  std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  text.append(digits.data(), end);
+prometheus::Labels labels_of(std::initializer_list<MetricLabel> labels) {
+  prometheus::Labels map;
+  for (const auto& [name, value] : labels) map.emplace(name, value);
+  return map;
 }
 
-std::string label_text(std::initializer_list<MetricLabel> labels) {
-  std::string text;
-  for (const auto& [key, value] : labels) {
-    if (!text.empty()) text.push_back(',');
-    text.append(key).append("=\"");
-    for (const char c : value) {
-      if (c == '"' || c == '\\') text.push_back('\\');
-      if (c == '\n') {
-        text.append("\\n");
-      } else {
-        text.push_back(c);
-      }
-    }
-    text.push_back('"');
-  }
-  return text;
-}
-
-void append_line(std::string& text,
-                 std::string_view name,
-                 std::string_view suffix,
-                 std::string_view labels,
-                 double value) {
-  text.append(name).append(suffix);
-  if (!labels.empty()) text.append("{").append(labels).append("}");
-  text.push_back(' ');
-  append_number(text, value);
-  text.push_back('\n');
-}
-
-void append_header(std::string& text,
-                   std::string_view name,
-                   std::string_view help,
-                   std::string_view type) {
-  text.append("# HELP ").append(name).append(" ").append(help).append("\n");
-  text.append("# TYPE ").append(name).append(" ").append(type).append("\n");
+template <class Families>
+auto& found_in(Families& families, std::string_view name) {
+  const auto family = families.find(name);
+  SYMCELL_ASSERT(family != families.end());
+  return family->second;
 }
 
 }  // namespace
 
-void Metrics::declare_counter(std::string name, std::string help) {
-  const std::lock_guard lock(mutex_);
-  families_[std::move(name)].help = std::move(help);
+struct Metrics::Impl {
+  struct HistogramFamily {
+    prometheus::Family<prometheus::Histogram>* family;
+    std::vector<double> bounds;
+  };
+
+  mutable std::mutex mutex;  // guards the maps
+  prometheus::Registry registry;
+  std::map<std::string, prometheus::Family<prometheus::Counter>*, std::less<>> counters;
+  std::map<std::string, prometheus::Family<prometheus::Gauge>*, std::less<>> gauges;
+  std::map<std::string, HistogramFamily, std::less<>> histograms;
+};
+
+Metrics::Metrics() : impl_(std::make_unique<Impl>()) {
 }
 
-void Metrics::declare_histogram(std::string name, std::string help, std::vector<double> bounds) {
-  const std::lock_guard lock(mutex_);
-  Family& family = families_[std::move(name)];
-  family.help = std::move(help);
-  family.bounds = std::move(bounds);
+Metrics::~Metrics() = default;
+
+void Metrics::declare_counter(const std::string& name, const std::string& help) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->counters[name] =
+      &prometheus::BuildCounter().Name(name).Help(help).Register(impl_->registry);
 }
 
-void Metrics::count(std::string_view name, std::initializer_list<MetricLabel> labels) {
-  const std::string key = label_text(labels);
-  const std::lock_guard lock(mutex_);
-  const auto family = families_.find(name);
-  SYMCELL_ASSERT(family != families_.end());
-  ++family->second.series[key].count;
+void Metrics::declare_gauge(const std::string& name, const std::string& help) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->gauges[name] = &prometheus::BuildGauge().Name(name).Help(help).Register(impl_->registry);
+}
+
+void Metrics::declare_histogram(const std::string& name,
+                                const std::string& help,
+                                std::vector<double> bounds) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->histograms[name] = {
+      &prometheus::BuildHistogram().Name(name).Help(help).Register(impl_->registry),
+      std::move(bounds)};
+}
+
+void Metrics::count(std::string_view name,
+                    std::initializer_list<MetricLabel> labels,
+                    double amount) {
+  const std::lock_guard lock(impl_->mutex);
+  found_in(impl_->counters, name)->Add(labels_of(labels)).Increment(amount);
+}
+
+void Metrics::count_up_to(std::string_view name,
+                          std::initializer_list<MetricLabel> labels,
+                          double value) {
+  const std::lock_guard lock(impl_->mutex);
+  auto& counter = found_in(impl_->counters, name)->Add(labels_of(labels));
+  counter.Increment(std::max(0.0, value - counter.Value()));
+}
+
+void Metrics::set(std::string_view name, std::initializer_list<MetricLabel> labels, double value) {
+  const std::lock_guard lock(impl_->mutex);
+  found_in(impl_->gauges, name)->Add(labels_of(labels)).Set(value);
 }
 
 void Metrics::observe(std::string_view name,
                       double value,
                       std::initializer_list<MetricLabel> labels) {
-  const std::string key = label_text(labels);
-  const std::lock_guard lock(mutex_);
-  const auto family = families_.find(name);
-  SYMCELL_ASSERT(family != families_.end());
-  const std::vector<double>& bounds = family->second.bounds;
-  Series& series = family->second.series[key];
-  series.buckets.resize(bounds.size() + 1);
-  const auto bucket = std::ranges::lower_bound(bounds, value) - bounds.begin();
-  ++series.buckets[static_cast<std::size_t>(bucket)];
-  series.sum += value;
-  ++series.count;
+  const std::lock_guard lock(impl_->mutex);
+  const Impl::HistogramFamily& histogram = found_in(impl_->histograms, name);
+  histogram.family->Add(labels_of(labels), histogram.bounds).Observe(value);
 }
 
 std::string Metrics::text() const {
-  std::string text;
-  const std::lock_guard lock(mutex_);
-  for (const auto& [name, family] : families_) {
-    const bool histogram = !family.bounds.empty();
-    append_header(text, name, family.help, histogram ? "histogram" : "counter");
-    for (const auto& [labels, series] : family.series) {
-      if (!histogram) {
-        append_line(text, name, "", labels, static_cast<double>(series.count));
-        continue;
-      }
-      std::uint64_t cumulative = 0;
-      for (std::size_t i = 0; i < series.buckets.size(); ++i) {
-        cumulative += series.buckets[i];
-        std::string bucket_labels = labels.empty() ? "le=\"" : labels + ",le=\"";
-        if (i < family.bounds.size()) {
-          append_number(bucket_labels, family.bounds[i]);
-        } else {
-          bucket_labels.append("+Inf");
-        }
-        bucket_labels.push_back('"');
-        append_line(text, name, "_bucket", bucket_labels, static_cast<double>(cumulative));
-      }
-      append_line(text, name, "_sum", labels, series.sum);
-      append_line(text, name, "_count", labels, static_cast<double>(series.count));
-    }
-  }
-  return text;
-}
-
-void Metrics::append_gauge_header(std::string& text, std::string_view name, std::string_view help) {
-  append_header(text, name, help, "gauge");
-}
-
-void Metrics::append_counter_header(std::string& text,
-                                    std::string_view name,
-                                    std::string_view help) {
-  append_header(text, name, help, "counter");
-}
-
-void Metrics::append_sample(std::string& text,
-                            std::string_view name,
-                            std::initializer_list<MetricLabel> labels,
-                            double value) {
-  append_line(text, name, "", label_text(labels), value);
+  auto families = impl_->registry.Collect();
+  std::ranges::sort(families, {}, &prometheus::MetricFamily::name);
+  return prometheus::TextSerializer().Serialize(families);
 }
 
 }  // namespace symcell::server

@@ -1,13 +1,11 @@
-// Counters and histograms in the text format of Prometheus.
+// Figures for Prometheus, kept by prometheus-cpp: counters, gauges and histograms by name.
 //
-// Families are declared before use; every series of a family appears when it is first counted.
-// Any thread may count.
+// A family is declared once, which gives its help text; a series of it appears when it is first
+// counted. Any thread may count.
 #pragma once
 
-#include <cstdint>
 #include <initializer_list>
-#include <map>
-#include <mutex>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,40 +17,37 @@ using MetricLabel = std::pair<std::string_view, std::string_view>;
 
 class Metrics {
  public:
-  void declare_counter(std::string name, std::string help);
-  // `bounds`: upper bounds of the buckets, ascending, without +Inf.
-  void declare_histogram(std::string name, std::string help, std::vector<double> bounds);
+  Metrics();
+  ~Metrics();
+  Metrics(const Metrics&) = delete;
+  Metrics& operator=(const Metrics&) = delete;
 
-  void count(std::string_view name, std::initializer_list<MetricLabel> labels = {});
+  void declare_counter(const std::string& name, const std::string& help);
+  void declare_gauge(const std::string& name, const std::string& help);
+  // `bounds`: upper bounds of the buckets, ascending, without +Inf.
+  void declare_histogram(const std::string& name,
+                         const std::string& help,
+                         std::vector<double> bounds);
+
+  // All require that the name was declared.
+  void count(std::string_view name,
+             std::initializer_list<MetricLabel> labels = {},
+             double amount = 1);
+  // For a counter that is kept elsewhere and never goes back.
+  void count_up_to(std::string_view name, std::initializer_list<MetricLabel> labels, double value);
+  void set(std::string_view name, std::initializer_list<MetricLabel> labels, double value);
   void observe(std::string_view name, double value, std::initializer_list<MetricLabel> labels = {});
 
+  // In the text format, families in order of their names.
   [[nodiscard]] std::string text() const;
 
-  // One sample of a value read elsewhere, with its header lines.
-  static void append_gauge_header(std::string& text, std::string_view name, std::string_view help);
-  static void append_counter_header(std::string& text,
-                                    std::string_view name,
-                                    std::string_view help);
-  static void append_sample(std::string& text,
-                            std::string_view name,
-                            std::initializer_list<MetricLabel> labels,
-                            double value);
-
  private:
-  struct Series {
-    std::vector<std::uint64_t> buckets;  // histograms only; the last is +Inf
-    double sum = 0;
-    std::uint64_t count = 0;
-  };
-  struct Family {
-    std::string help;
-    std::vector<double> bounds;            // empty: a counter
-    std::map<std::string, Series> series;  // by label text, e.g. `route="/v1/jobs",status="202"`
-  };
-
-  // Guards `families_` and all it holds.
-  mutable std::mutex mutex_;
-  std::map<std::string, Family, std::less<>> families_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
+
+// Figures of this process as client libraries name them: processor time, memory, descriptors, start.
+void declare_process_metrics(Metrics& metrics);
+void report_process_metrics(Metrics& metrics);
 
 }  // namespace symcell::server

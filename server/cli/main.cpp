@@ -7,6 +7,7 @@
 
 #include "api/version.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/keys_command.hpp"
 #include "server/cli/report_error.hpp"
 #include "server/cli/serve_command.hpp"
 #include "server/cli/worker_command.hpp"
@@ -31,6 +32,7 @@ int run(int argc, char** argv) {
   symcell::cli::add_mesh_command(app, exit_code);
   symcell::cli::add_inspect_command(app, exit_code);
   symcell::add_serve_command(app, exit_code);
+  symcell::add_keys_command(app, exit_code);
   symcell::add_worker_command(app, exit_code);
   symcell::cli::add_verify_command(app, exit_code);
   // CLI11 would only say that a subcommand is missing.

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <thread>
@@ -39,6 +40,8 @@ struct ServeFlags {
   int port = 8080;
   std::string port_file;
   std::string data_dir;
+  std::string store;
+  std::string role = "all";
   std::size_t workers = std::max(1U, std::thread::hardware_concurrency());
   std::size_t http_threads = 16;
   std::size_t patient_threads = 512;
@@ -55,10 +58,18 @@ struct ServeFlags {
   std::string log_level = "info";
   std::string log_format = "text";
   std::vector<std::string> cors_origins;
+  bool require_key = false;
+  bool insecure_open = false;
+  std::string tls_certificate;
+  std::string tls_key;
+  std::vector<std::string> webhook_hosts;
+  std::string webhook_secret_file;
+  bool webhook_private = false;
   std::vector<std::string> allowed_hosts;
   std::int64_t retention_hours = 24L * 7;
   std::int64_t retention_jobs = 10'000;
   std::int64_t retention_bytes = std::int64_t{20} << 30U;
+  std::int64_t failed_model_hours = 24;
 };
 
 void add_network_flags(CLI::App& command, ServeFlags& flags) {
@@ -114,12 +125,58 @@ void add_network_flags(CLI::App& command, ServeFlags& flags) {
       ->delimiter(',');
 }
 
+void add_access_flags(CLI::App& command, ServeFlags& flags) {
+  command
+      .add_flag("--require-key", flags.require_key,
+                "Ask every caller for an API key, also on a loopback address; so it is anyway as "
+                "soon as there is a key, and on other addresses")
+      ->envname("SYMCELL_REQUIRE_KEY");
+  command
+      .add_flag("--insecure-open", flags.insecure_open,
+                "Serve whoever reaches the port, without a key, on any address")
+      ->envname("SYMCELL_INSECURE_OPEN")
+      ->excludes("--require-key");
+  command
+      .add_option("--tls-certificate", flags.tls_certificate,
+                  "Serve over TLS: file with the certificate and its chain, PEM; read again on "
+                  "SIGHUP")
+      ->envname("SYMCELL_TLS_CERTIFICATE");
+  command.add_option("--tls-key", flags.tls_key, "File with the certificate's private key, PEM")
+      ->envname("SYMCELL_TLS_KEY");
+  command
+      .add_option("--webhook-host", flags.webhook_hosts,
+                  "Hosts, with commas between them, that may be told of finished jobs; *.name: all "
+                  "below it, *: any; default: none")
+      ->envname("SYMCELL_WEBHOOK_HOST")
+      ->delimiter(',');
+  command
+      .add_option("--webhook-secret-file", flags.webhook_secret_file,
+                  "File with the secret that signs webhooks: whsec_ and base64")
+      ->envname("SYMCELL_WEBHOOK_SECRET_FILE");
+  command
+      .add_flag("--webhook-private", flags.webhook_private,
+                "Webhooks may go to private addresses, too")
+      ->envname("SYMCELL_WEBHOOK_PRIVATE");
+}
+
 void add_job_flags(CLI::App& command, ServeFlags& flags) {
   command
       .add_option("--data-dir", flags.data_dir,
                   "Where jobs and results are kept; default: $XDG_STATE_HOME/symcell or "
                   "~/.local/state/symcell")
       ->envname("SYMCELL_DATA_DIR");
+  command
+      .add_option("--store", flags.store,
+                  "postgres://USER:PASSWORD@HOST/DATABASE of servers that share their jobs; they "
+                  "share --data-dir as well; default: a database in --data-dir")
+      ->envname("SYMCELL_STORE");
+  command
+      .add_option("--role", flags.role,
+                  "api: answers callers, and leaves meshing to others of the same --store; worker: "
+                  "meshes, and answers probes alone; all")
+      ->envname("SYMCELL_ROLE")
+      ->check(CLI::IsMember({"all", "api", "worker"}))
+      ->capture_default_str();
   command.add_option("--workers", flags.workers, "Jobs that run at once")
       ->envname("SYMCELL_WORKERS")
       ->check(CLI::Range(1, 1024))
@@ -179,6 +236,12 @@ void add_retention_flags(CLI::App& command, ServeFlags& flags) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command
+      .add_option("--failed-model-hours", flags.failed_model_hours,
+                  "Hours that models of jobs without a result are kept; 0: as long as the jobs")
+      ->envname("SYMCELL_FAILED_MODEL_HOURS")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  command
       .add_option(
           "--retention-bytes", flags.retention_bytes,
           "Bytes of models and results above which the oldest finished jobs go; 0: no bound")
@@ -198,6 +261,26 @@ void add_log_flags(CLI::App& command, ServeFlags& flags) {
       ->capture_default_str();
 }
 
+server::ServerRole role_of(const ServeFlags& flags) {
+  if (flags.role == "api") return server::ServerRole::kApi;
+  return flags.role == "worker" ? server::ServerRole::kWorker : server::ServerRole::kAll;
+}
+
+server::WebhookSettings webhook_settings_of(const ServeFlags& flags) {
+  server::WebhookSettings settings{flags.webhook_hosts, flags.webhook_private, {}};
+  if (flags.webhook_secret_file.empty()) return settings;
+  std::ifstream file(flags.webhook_secret_file);
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const auto secret = server::parse_webhook_secret(text);
+  if (!secret) {
+    throw std::runtime_error(
+        flags.webhook_secret_file +
+        " holds no secret for webhooks: whsec_ and base64 of 24 bytes or more");
+  }
+  settings.secret = *secret;
+  return settings;
+}
+
 server::ServiceSettings settings_of(const ServeFlags& flags) {
   server::ServiceSettings settings;
   settings.http.host = flags.host;
@@ -209,12 +292,17 @@ server::ServiceSettings settings_of(const ServeFlags& flags) {
   settings.http.max_body_bytes = flags.max_body_bytes;
   settings.http.cors_origins = flags.cors_origins;
   settings.http.allowed_hosts = flags.allowed_hosts;
-  settings.jobs.workers = flags.workers;
+  settings.role = role_of(flags);
+  settings.jobs.workers = settings.role == server::ServerRole::kApi ? 0 : flags.workers;
+  settings.jobs.store_url = flags.store;
   settings.jobs.queue_limit = flags.queue_limit;
   settings.jobs.time_limit_s = flags.time_limit_s;
   settings.jobs.max_elements = flags.max_elements;
   settings.jobs.retention = {flags.retention_hours * 3600, flags.retention_jobs,
-                             flags.retention_bytes};
+                             flags.retention_bytes, flags.failed_model_hours * 3600};
+  settings.access = {flags.require_key, flags.insecure_open};
+  settings.http.tls = {flags.tls_certificate, flags.tls_key};
+  settings.webhooks = webhook_settings_of(flags);
   settings.data_directory = flags.data_dir.empty() ? server::default_state_directory()
                                                    : std::filesystem::path(flags.data_dir);
   settings.grace = std::chrono::milliseconds(static_cast<std::int64_t>(flags.grace_s * 1000));
@@ -233,7 +321,8 @@ void write_port_file(const std::string& path, int port) {
 
 server::WorkerSettings worker_settings_of(const ServeFlags& flags) {
   server::WorkerSettings settings;
-  settings.pool.ahead = flags.workers + 1;  // one for an inspection
+  // One for an inspection; who leaves meshing to others reads models and inspects all the same.
+  settings.pool.ahead = flags.role == "api" ? 2 : flags.workers + 1;
   settings.pool.requests_per_worker = flags.worker_jobs;
   settings.memory_bytes = flags.worker_memory_bytes;
   settings.cpu_seconds = flags.cpu_limit_s;
@@ -245,6 +334,7 @@ sigset_t stop_signals() {
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGHUP);
   return signals;
 }
 
@@ -293,7 +383,44 @@ void warn_of_memory(const ServeFlags& flags, Logger& logger) {
                   {"machine_memory", static_cast<std::int64_t>(machine)}});
 }
 
+// The signal that ends the server.
+int wait_for_end(const sigset_t& signals, server::Service& service, Logger& logger) {
+  while (true) {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    if (signal != SIGHUP) return signal;
+    try {
+      service.reload_tls();
+      logger.info("reloaded");
+    } catch (const std::exception& exception) {
+      logger.error("not_reloaded", {{"what", exception.what()}});
+    }
+  }
+}
+
+// What is wrong with flags that are sound each by itself; empty: nothing.
+std::string contradiction_in(const ServeFlags& flags) {
+  if (flags.tls_certificate.empty() != flags.tls_key.empty()) {
+    return "--tls-certificate and --tls-key go together";
+  }
+  if (!flags.webhook_hosts.empty() && flags.webhook_secret_file.empty()) {
+    return "--webhook-host needs --webhook-secret-file, by which webhooks are signed";
+  }
+  if (!flags.store.empty() && !flags.store.starts_with("postgres://") &&
+      !flags.store.starts_with("postgresql://")) {
+    return "--store is postgres://...; without it the jobs are in --data-dir";
+  }
+  if (flags.role != "all" && flags.store.empty()) {
+    return "--role " + flags.role + " needs a --store that others have as well";
+  }
+  return {};
+}
+
 int serve(const ServeFlags& flags) {
+  if (const std::string fault = contradiction_in(flags); !fault.empty()) {
+    std::cerr << "symcell serve: " << fault << "\n";
+    return kUsage;
+  }
   open_standard_streams();
   Logger logger(*server::log_level_from_name(flags.log_level),
                 flags.log_format == "json" ? LogFormat::kJson : LogFormat::kText);
@@ -312,16 +439,17 @@ int serve(const ServeFlags& flags) {
   auto service = std::make_unique<server::Service>(settings, engine, logger);
   const int port = service->start();
   write_port_file(flags.port_file, port);
-  std::cout << "symcell: listening on http://" << settings.http.host << ":" << port << std::endl;
+  std::cout << "symcell: listening on " << (flags.tls_certificate.empty() ? "http://" : "https://")
+            << settings.http.host << ":" << port << std::endl;
   const std::string data_directory = settings.data_directory.string();
   logger.info("listening", {{"host", settings.http.host},
                             {"port", std::int64_t{port}},
                             {"data_dir", data_directory},
+                            {"role", std::string_view(flags.role)},
                             {"workers", static_cast<std::int64_t>(settings.jobs.workers)},
                             {"version", version()}});
 
-  int signal = 0;
-  sigwait(&signals, &signal);
+  const int signal = wait_for_end(signals, *service, logger);
   logger.info("stopping", {{"signal", std::int64_t{signal}}});
   const bool joined = service->stop();
   logger.info("stopped");
@@ -340,6 +468,7 @@ void add_serve_command(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("serve", "Serve meshing jobs over HTTP");
   const auto flags = std::make_shared<ServeFlags>();
   add_network_flags(*command, *flags);
+  add_access_flags(*command, *flags);
   add_job_flags(*command, *flags);
   add_worker_flags(*command, *flags);
   add_retention_flags(*command, *flags);

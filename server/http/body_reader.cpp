@@ -51,6 +51,10 @@ void refuse_broken(Call& call, const char* detail) {
 void refuse_file(Call& call, InflatingFile::Fault fault, std::size_t max_bytes) {
   if (fault == InflatingFile::Fault::kTooLarge) {
     refuse_size(call, max_bytes);
+  } else if (fault == InflatingFile::Fault::kTooDense) {
+    respond_problem(call, ServiceProblem::kBodyTooLarge,
+                    "the model is more than 20 times as large as what was sent of it; send it "
+                    "without compression");
   } else {
     refuse_broken(call, "the model is a gzip file that is damaged or cut off");
   }
@@ -83,6 +87,7 @@ std::optional<ArrivedFile> receive_body(Call& call,
   const bool read =
       !call.exchange.body_expected || (*call.body)([&](const char* data, std::size_t size) {
         if (coding == Coding::kIdentity) return file.add({data, size});
+        file.came(size);
         inflates = inflater.write({data, size});
         return inflates;
       });

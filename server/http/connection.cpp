@@ -95,7 +95,8 @@ bool ConnectionStream::wait_within_limits(short events, Pace& pace) const {
 }
 
 bool ConnectionStream::is_readable() const {
-  return begin_ < buffer_.size() || poll_one(socket_, POLLIN, milliseconds(0)) > 0;
+  return begin_ < buffer_.size() || connection_.pending() ||
+         poll_one(socket_, POLLIN, milliseconds(0)) > 0;
 }
 
 bool ConnectionStream::is_writable() const {
@@ -107,7 +108,7 @@ bool ConnectionStream::is_writable() const {
 bool ConnectionStream::receive_more() {
   std::array<char, 16384> piece;
   while (true) {
-    const ssize_t n = ::recv(socket_, piece.data(), piece.size(), MSG_DONTWAIT);
+    const ssize_t n = connection_.receive(piece.data(), piece.size());
     if (n > 0) {
       buffer_.assign(piece.data(), static_cast<std::size_t>(n));
       begin_ = 0;
@@ -139,7 +140,7 @@ ssize_t ConnectionStream::write(const char* ptr, size_t size) {
   // A client that always keeps pace never waits: look here too.
   if (stop_.raised() && Clock::now() > stop_.give_up_at()) return -1;
   while (true) {
-    const ssize_t n = ::send(socket_, ptr, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+    const ssize_t n = connection_.send(ptr, size);
     if (n >= 0) {
       written_ += static_cast<std::uint64_t>(n);
       return n;

@@ -8,12 +8,14 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "server/http/lobby.hpp"
 #include "server/http/request_head.hpp"
 #include "server/http/stop_signal.hpp"
+#include "server/keys/api_key.hpp"
 
 namespace symcell::server {
 
@@ -74,11 +76,24 @@ class ConnectionStream final : public httplib::Stream {
   Pace writing_;
 };
 
+// Who calls.
+struct Caller {
+  std::string client;                 // for turns and shares: the key's id, or an address
+  std::shared_ptr<const ApiKey> key;  // null: none was asked for
+  bool sees_all = true;               // jobs of everybody
+
+  [[nodiscard]] std::string owner() const { return key ? key->id : std::string(); }
+};
+
 // What the server notes about the request that the calling thread serves.
 struct Exchange {
   std::string request_id;
+  std::string client;  // its address
+  Caller caller;
   std::string method;
   std::string path;
+  std::string job;               // that the request is about, "" if none
+  std::string traceparent;       // W3C Trace Context, "" if none came
   std::string route;             // template of the route, "" if none matched
   std::string accept_encoding;   // moved here so that httplib compresses nothing by itself
   std::string content_encoding;  // likewise for inflating

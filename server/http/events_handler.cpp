@@ -89,7 +89,7 @@ void send_events(Call& call, ServiceContext& context) {
     respond_problem(call, ServiceProblem::kNotFound, "there is no such job; it may have expired");
     return;
   }
-  Slots::Slot place = context.streams.try_take();
+  Slots::Slot place = context.streams.try_take(call.exchange.caller.client);
   if (!place) {
     respond_problem(call, ServiceProblem::kTooManyStreams,
                     "too many clients follow jobs; ask for the job's state instead");

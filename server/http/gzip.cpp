@@ -14,7 +14,7 @@ namespace symcell::server {
 namespace {
 
 constexpr int kGzipWindow = 15 + 16;  // zlib: + 16 means gzip's header and trailer
-constexpr int kFastLevel = 3;         // the mesh writer outruns anything slower
+constexpr int kFastLevel = 1;         // the mesh writer outruns anything slower
 constexpr std::size_t kPieceBytes = 64UL * 1024;
 
 using Buffer = std::array<char, kPieceBytes>;

@@ -91,6 +91,29 @@ bool etag_matches(std::string_view if_none_match, std::string_view etag) {
   return false;
 }
 
+RangeRequest parse_byte_range(std::string_view text, std::uint64_t bytes) {
+  constexpr std::string_view kUnit = "bytes=";
+  if (!text.starts_with(kUnit) || text.find(',') != std::string_view::npos) return {};
+  text = trim(text.substr(kUnit.size()));
+  const std::size_t dash = text.find('-');
+  if (dash == std::string_view::npos) return {};
+  const auto first = parse_whole_number(text.substr(0, dash));
+  const auto last = parse_whole_number(text.substr(dash + 1));
+  if (dash == 0) {
+    // The last so many bytes.
+    if (!last) return {};
+    if (*last == 0 || bytes == 0) return {.unsatisfiable = true};
+    const auto wanted = std::min(static_cast<std::uint64_t>(*last), bytes);
+    return {.range = ByteRange{bytes - wanted, bytes - 1}};
+  }
+  if (!first || (dash + 1 < text.size() && !last) || (last && *last < *first)) return {};
+  const auto begin = static_cast<std::uint64_t>(*first);
+  if (begin >= bytes) return {.unsatisfiable = true};
+  const std::uint64_t end =
+      last ? std::min(static_cast<std::uint64_t>(*last), bytes - 1) : bytes - 1;
+  return {.range = ByteRange{begin, end}};
+}
+
 std::optional<std::int64_t> parse_whole_number(std::string_view text) {
   std::int64_t value = 0;
   const char* end = text.data() + text.size();

@@ -30,6 +30,19 @@ struct WeightedValue {
 // asks for here.
 [[nodiscard]] bool etag_matches(std::string_view if_none_match, std::string_view etag);
 
+struct ByteRange {
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;  // included
+};
+struct RangeRequest {
+  std::optional<ByteRange> range = {};  // nullopt: all
+  bool unsatisfiable = false;
+};
+
+// Of a Range header and a body of so many bytes. Several ranges at once, other units and what is
+// malformed count as no range, as the standard allows.
+[[nodiscard]] RangeRequest parse_byte_range(std::string_view text, std::uint64_t bytes);
+
 // Digits only.
 [[nodiscard]] std::optional<std::int64_t> parse_whole_number(std::string_view text);
 

@@ -32,39 +32,45 @@ void show_readiness(Call& call, ServiceContext& context) {
     respond_problem(call, ServiceProblem::kOverloaded, "no worker process can be started");
     return;
   }
+  if (const std::string fault = context.jobs.fault(); !fault.empty()) {
+    context.logger.error("service_unhealthy", {{"what", std::string_view(fault)}});
+    respond_problem(call, ServiceProblem::kOverloaded, fault);
+    return;
+  }
   respond_text(call, "ready\n", "text/plain; charset=utf-8");
 }
 
-void append_gauge(std::string& text, const char* name, const char* help, double value) {
-  Metrics::append_gauge_header(text, name, help);
-  Metrics::append_sample(text, name, {}, value);
+void report(Metrics& metrics, const char* name, double value) {
+  metrics.set(name, {}, value);
 }
 
 void show_metrics(Call& call, ServiceContext& context) {
-  std::string text = context.metrics.text();
+  Metrics& metrics = context.metrics;
   const StoreTotals totals = context.jobs.totals();
-  Metrics::append_gauge_header(text, "symcell_jobs", "Stored jobs by state.");
   for (const JobState state : kAllJobStates) {
-    Metrics::append_sample(text, "symcell_jobs", {{"state", job_state_name(state)}},
-                           static_cast<double>(totals.by_state[static_cast<std::size_t>(state)]));
+    metrics.set("symcell_jobs", {{"state", job_state_name(state)}},
+                static_cast<double>(totals.by_state[static_cast<std::size_t>(state)]));
   }
   const JobRunner& runner = context.jobs.runner();
-  append_gauge(text, "symcell_stored_bytes", "Bytes of all models and results.",
-               static_cast<double>(totals.bytes));
-  append_gauge(text, "symcell_queue_length", "Jobs that wait for a worker.",
-               static_cast<double>(runner.queued()));
-  append_gauge(text, "symcell_queue_limit", "Jobs that may wait.",
-               static_cast<double>(runner.queue_limit()));
-  append_gauge(text, "symcell_workers", "Jobs that may run at once.",
-               static_cast<double>(runner.workers()));
-  append_gauge(text, "symcell_workers_busy", "Jobs that run now.",
-               static_cast<double>(runner.running()));
-  append_gauge(text, "symcell_http_requests_in_flight", "Requests being served.",
-               static_cast<double>(context.requests_in_flight.load()));
-  append_gauge(text, "symcell_streams_open", "Event streams and waits for a job.",
-               static_cast<double>(context.streams.taken()));
-  context.jobs.engine().append_metrics(text);
-  respond_text(call, text, "text/plain; version=0.0.4; charset=utf-8");
+  report(metrics, "symcell_stored_bytes", static_cast<double>(totals.bytes));
+  report(metrics, "symcell_free_bytes", static_cast<double>(context.jobs.free_bytes()));
+  report(metrics, "symcell_queue_length",
+         static_cast<double>(totals.by_state[static_cast<std::size_t>(JobState::kQueued)]));
+  try {
+    report(metrics, "symcell_queue_age_seconds", context.jobs.queue_age_s());
+  } catch (const StoreError&) {
+    // Counted by the store's watch; the age stays as it was found last.
+  }
+  report(metrics, "symcell_queue_limit", static_cast<double>(context.jobs.limits().queue_limit));
+  report(metrics, "symcell_workers", static_cast<double>(runner.workers()));
+  report(metrics, "symcell_workers_busy", static_cast<double>(runner.running()));
+  report(metrics, "symcell_jobs_overdue", static_cast<double>(runner.overdue()));
+  report(metrics, "symcell_http_requests_in_flight",
+         static_cast<double>(context.requests_in_flight.load()));
+  report(metrics, "symcell_streams_open", static_cast<double>(context.streams.taken()));
+  report_process_metrics(metrics);
+  context.jobs.engine().report_metrics(metrics);
+  respond_text(call, metrics.text(), "text/plain; version=0.0.4; charset=utf-8");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <exception>
 #include <stdexcept>
 #include <string_view>
 
@@ -19,6 +20,7 @@
 #include "server/http/problem_response.hpp"
 #include "server/http/site_policy.hpp"
 #include "server/http/stop_signal.hpp"
+#include "server/jobs/job.hpp"
 
 namespace symcell::server {
 namespace {
@@ -70,10 +72,13 @@ class HttpServer::Impl final : public httplib::Server {
         logger_(logger),
         in_flight_(in_flight),
         sites_(settings.host, settings.allowed_hosts, settings.cors_origins),
+        tls_(settings.tls.certificate.empty() ? nullptr
+                                              : std::make_unique<TlsContext>(settings.tls)),
         lobby_(
             settings.lobby,
             [this](const std::shared_ptr<Connection>& connection) { return take(connection); },
-            [this] { return refusal(); }),
+            [this] { return refusal(); },
+            tls_.get()),
         quick_(settings.threads, kQueuedPerThread * settings.threads),
         patient_(settings.patient_threads, 0) {
     // A second line only: the body reader counts exactly, and forms need some room for headers.
@@ -122,6 +127,10 @@ class HttpServer::Impl final : public httplib::Server {
     lobby_.stop();
   }
 
+  void reload_tls() {
+    if (tls_) tls_->reload();
+  }
+
   void stop_connections() { stop_.raise(kStopPatience); }
 
  private:
@@ -137,11 +146,14 @@ class HttpServer::Impl final : public httplib::Server {
     if (!settings_.cors_origins.empty()) {
       headers.emplace("Access-Control-Allow-Methods", "GET, HEAD, POST, DELETE, OPTIONS");
       headers.emplace("Access-Control-Max-Age", "600");
-      headers.emplace("Access-Control-Allow-Headers",
-                      "Content-Type, Content-Encoding, Prefer, Idempotency-Key, If-None-Match, "
-                      "X-Request-Id");
+      headers.emplace(
+          "Access-Control-Allow-Headers",
+          "Content-Type, Content-Encoding, Prefer, Idempotency-Key, If-None-Match, "
+          "If-Range, Range, Webhook-Url, traceparent, X-Request-Id, Authorization, X-API-Key");
       headers.emplace("Access-Control-Expose-Headers",
-                      "Location, ETag, Retry-After, X-Request-Id, Content-Disposition");
+                      "Location, ETag, Retry-After, X-Request-Id, Content-Disposition, "
+                      "Content-Range, RateLimit, "
+                      "RateLimit-Policy");
       headers.emplace("Vary", "Origin");
     }
     set_default_headers(std::move(headers));
@@ -253,6 +265,8 @@ class HttpServer::Impl final : public httplib::Server {
     exchange.path = request.path;
     const std::string id = request.get_header_value("X-Request-Id");
     if (is_usable_request_id(id)) exchange.request_id = id;
+    const std::string trace = request.get_header_value("traceparent");
+    if (is_traceparent(trace)) exchange.traceparent = trace;
     // httplib would compress, and inflate without a bound, by itself.
     exchange.accept_encoding = take_header(request, "Accept-Encoding");
     exchange.content_encoding = take_header(request, "Content-Encoding");
@@ -300,6 +314,7 @@ class HttpServer::Impl final : public httplib::Server {
     ++in_flight_;
     Exchange exchange;
     exchange.request_id = make_random_hex();
+    exchange.client = connection.client();
     exchange.declared_bytes = connection.head.head().content_length;
     current_exchange = &exchange;
     const bool last = ++connection.served == kMaxKeepAliveRequests || svr_sock_ == INVALID_SOCKET;
@@ -314,8 +329,15 @@ class HttpServer::Impl final : public httplib::Server {
     } else if (fault.status != 0) {
       refuse_head(stream, exchange, fault.status, fault.detail);
     } else {
-      sound = process_request(stream, last, closed,
-                              [&](httplib::Request& request) { prepare(request, exchange); });
+      // What produces a body on its way, a stored file for instance, may fail beyond all answers.
+      try {
+        sound = process_request(stream, last, closed,
+                                [&](httplib::Request& request) { prepare(request, exchange); });
+      } catch (const std::exception& exception) {
+        logger_.error("answer_broke_off", {{"request_id", std::string_view(exchange.request_id)},
+                                           {"what", exception.what()}});
+        metrics_.count("symcell_internal_errors_total", {{"where", "http"}});
+      }
     }
     current_exchange = nullptr;
     --in_flight_;
@@ -368,12 +390,17 @@ class HttpServer::Impl final : public httplib::Server {
     metrics_.count("symcell_http_requests_total",
                    {{"route", route}, {"method", method}, {"status", status}});
     metrics_.observe("symcell_http_request_duration_seconds", seconds, {{"route", route}});
+    const std::string owner = exchange.caller.owner();
     // Probes would drown everything else.
     const bool probe = route == "/healthz" || route == "/readyz" || route == "/metrics";
     logger_.log(probe ? LogLevel::kDebug : LogLevel::kInfo, "http_request",
                 {{"request_id", exchange.request_id},
                  {"method", method},
                  {"path", exchange.path},
+                 {"client", std::string_view(exchange.client)},
+                 {"key", std::string_view(owner)},
+                 {"job", std::string_view(exchange.job)},
+                 {"trace", trace_id_of(exchange.traceparent)},
                  {"status", std::int64_t{exchange.status}},
                  {"bytes", static_cast<std::int64_t>(bytes)},
                  {"seconds", seconds}});
@@ -386,6 +413,7 @@ class HttpServer::Impl final : public httplib::Server {
   std::atomic<std::size_t>& in_flight_;
   const SitePolicy sites_;
   StopSignal stop_;
+  const std::unique_ptr<TlsContext> tls_;
   int listening_ = INVALID_SOCKET;  // closed by the destructor: the lobby's thread may look at it
   Lobby lobby_;
   // They give connections back to the lobby.
@@ -409,6 +437,10 @@ int HttpServer::bind() {
 
 void HttpServer::run() {
   impl_->run();
+}
+
+void HttpServer::reload_tls() {
+  impl_->reload_tls();
 }
 
 void HttpServer::stop() {

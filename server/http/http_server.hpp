@@ -31,6 +31,7 @@ struct HttpSettings {
   std::size_t max_body_bytes = 0;
   std::vector<std::string> cors_origins = {};   // see SitePolicy
   std::vector<std::string> allowed_hosts = {};  // see SitePolicy
+  TlsFiles tls = {};
 };
 
 class HttpServer {
@@ -45,6 +46,8 @@ class HttpServer {
   // Serves until stop(); then requests under way are finished first.
   void run();
   void stop();
+  // Reads certificate and key again; throws where they are no good, and goes on with what it has.
+  void reload_tls();
 
   // Requests being served.
   [[nodiscard]] const std::atomic<std::size_t>& in_flight() const { return in_flight_; }

@@ -1,8 +1,14 @@
 #include "server/http/inflating_file.hpp"
 
+#include <algorithm>
+
 namespace symcell::server {
 namespace {
 constexpr std::string_view kGzipMagic = "\x1f\x8b";
+// What may be kept of a byte that was sent. Models of meshers shrink to a fifth, those of computers
+// to a tenth; small ones may be as regular as they like.
+constexpr std::uint64_t kMostDensity = 20;
+constexpr std::uint64_t kDenseBytes = std::uint64_t{8} << 20U;
 }  // namespace
 
 InflatingFile::InflatingFile(const std::filesystem::path& destination, std::size_t max_bytes)
@@ -12,6 +18,11 @@ InflatingFile::InflatingFile(const std::filesystem::path& destination, std::size
 bool InflatingFile::store(std::string_view piece) {
   if (file_.size() + piece.size() > max_bytes_) {
     fault_ = Fault::kTooLarge;
+    return false;
+  }
+  // Half a megabyte of gzip would else keep half a gigabyte of disk for days.
+  if (file_.size() + piece.size() > std::max<std::uint64_t>(kDenseBytes, kMostDensity * came_)) {
+    fault_ = Fault::kTooDense;
     return false;
   }
   file_.write(piece);
@@ -26,6 +37,7 @@ bool InflatingFile::pass_on(std::string_view piece) {
 }
 
 bool InflatingFile::add(std::string_view piece) {
+  if (!counted_outside_) came_ += piece.size();
   if (decided_) return pass_on(piece);
   head_.append(piece);
   if (head_.size() < kGzipMagic.size()) return true;

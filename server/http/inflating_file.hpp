@@ -17,8 +17,14 @@ class InflatingFile {
  public:
   InflatingFile(const std::filesystem::path& destination, std::size_t max_bytes);
 
-  enum class Fault : std::uint8_t { kNone, kTooLarge, kDamaged };
+  enum class Fault : std::uint8_t { kNone, kTooLarge, kTooDense, kDamaged };
 
+  // Bytes that came for what is added from now on, where a coding was taken off before; else those
+  // added count.
+  void came(std::size_t bytes) {
+    counted_outside_ = true;
+    came_ += bytes;
+  }
   // False: stop, fault() says why.
   [[nodiscard]] bool add(std::string_view piece);
   // After the last piece: true if the file is complete and kept, false with a fault.
@@ -32,6 +38,8 @@ class InflatingFile {
   FileWriter file_;
   std::size_t max_bytes_;
   Fault fault_ = Fault::kNone;
+  std::uint64_t came_ = 0;
+  bool counted_outside_ = false;
   std::string head_;  // until there are enough bytes to recognise gzip
   bool decided_ = false;
   std::unique_ptr<GzipInflater> inflater_;

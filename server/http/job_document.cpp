@@ -18,10 +18,11 @@ Json links_of(const Job& job) {
   const std::string self = job_path(job);
   Json links;
   links["self"] = self;
-  links["model"] = self + "/model";
-  links["surface"] = self + "/surface";
+  if (job.model_kept) links["model"] = self + "/model";
+  if (job.model_kept) links["surface"] = self + "/surface";
   links["events"] = self + "/events";
   if (!is_finished(job.state)) links["cancel"] = self + "/cancel";
+  if (is_finished(job.state) && job.model_kept) links["rerun"] = self + "/rerun";
   if (job.state == JobState::kSucceeded) {
     links["cell"] = self + "/cell";
     links["full"] = self + "/full";
@@ -72,7 +73,7 @@ Json progress_document(const Job& job, const JobService& jobs) {
     progress.phase = Phase::kDone;
     progress.fraction = 1;
     progress.quality_reached = 1;
-  } else if (const auto live = jobs.progress(job.id)) {
+  } else if (const auto live = jobs.progress(job)) {
     progress = *live;
   }
   Json document;
@@ -95,6 +96,7 @@ Json job_document(const Job& job, JobService& jobs, JobDetail detail) {
                        {"name", job.model_name.empty() ? Json(nullptr) : Json(job.model_name)},
                        {"bytes", job.model_bytes}};
   document["options"] = options_of(job);
+  document["key"] = job.owner.empty() ? Json(nullptr) : Json(job.owner);
   if (job.state == JobState::kFailed) document["error"] = Json::parse(job.error_json);
   if (job.state == JobState::kSucceeded) {
     Json statistics = statistics_of(job, jobs);

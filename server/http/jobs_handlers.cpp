@@ -1,9 +1,10 @@
-// POST and GET /v1/jobs, GET and DELETE /v1/jobs/{id}, POST /v1/jobs/{id}/cancel.
+// POST and GET /v1/jobs, GET and DELETE /v1/jobs/{id}, POST /v1/jobs/{id}/cancel and rerun.
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "server/base/clock.hpp"
 #include "server/http/call.hpp"
 #include "server/http/header_values.hpp"
 #include "server/http/job_document.hpp"
@@ -35,7 +36,19 @@ void respond_stopping(Call& call) {
 void respond_queue_full(Call& call, const ServiceContext& context) {
   respond_problem(call, ServiceProblem::kQueueFull,
                   "there are " + std::to_string(context.jobs.limits().queue_limit) +
-                      " jobs waiting already; try again later");
+                      " jobs waiting already, or as many as one client may have; try again later");
+}
+
+void respond_quota_spent(Call& call) {
+  respond_problem(call, ServiceProblem::kQuotaSpent,
+                  "the models sent with this key today, and this one, are more bytes than it may "
+                  "send from midnight to midnight, UTC");
+  constexpr std::int64_t kDayMs = std::int64_t{24} * 3600 * 1000;
+  set_retry_after(call, (kDayMs - now_ms() % kDayMs) / 1000 + 1);
+}
+
+KeyLimits limits_of(const Caller& caller) {
+  return caller.key ? caller.key->limits : KeyLimits{};
 }
 
 bool is_usable_key(const std::string& key) {
@@ -48,7 +61,7 @@ void respond_accepted(Call& call, Job job, ServiceContext& context) {
   call.response.set_header("Location", job_path(job));
   const auto wait = prefer_wait_seconds(call.header("Prefer"));
   // No place among those who wait: a preference may be left unmet.
-  const Slots::Slot place = wait ? context.streams.try_take() : nullptr;
+  const Slots::Slot place = wait ? context.streams.try_take(call.exchange.caller.client) : nullptr;
   if (place) {
     const std::int64_t seconds = std::min(*wait, kMaxWaitSeconds);
     call.response.set_header("Preference-Applied", "wait=" + std::to_string(seconds));
@@ -59,36 +72,107 @@ void respond_accepted(Call& call, Job job, ServiceContext& context) {
   respond_job(call, place && is_finished(job.state) ? 201 : 202, job, context);
 }
 
-void submit_job(Call& call, ServiceContext& context) {
-  const std::string key = call.header("Idempotency-Key");
-  if (!is_usable_key(key)) {
-    respond_problem(call, ServiceProblem::kBadRequest,
-                    "an Idempotency-Key has 1 to 255 printable ASCII characters");
-    return;
-  }
-  // Before the body is read: refusing early saves both sides the transfer. A repeated request is
-  // answered however full the queue is.
-  if (context.jobs.stopping()) return respond_stopping(call);
-  if (key.empty() && context.jobs.queue_is_full()) return respond_queue_full(call, context);
+void respond_unknown_job(Call& call) {
+  respond_problem(call, ServiceProblem::kNotFound, "there is no such job; it may have expired");
+}
 
-  const auto request = receive_model_request(call, context, context.max_body_bytes);
-  if (!request) return;
-  const SubmitOutcome outcome = context.jobs.submit(
-      {request->model.path(), request->format, request->model_name, request->options, key});
+void respond_bad_key(Call& call) {
+  respond_problem(call, ServiceProblem::kBadRequest,
+                  "an Idempotency-Key has 1 to 255 printable ASCII characters");
+}
+
+// Who is to be told of the job's end, "" for nobody; nullopt: not acceptable, the call is answered.
+std::optional<std::string> webhook_of(Call& call, const ServiceContext& context) {
+  std::string address = call.header("Webhook-Url");
+  if (address.empty()) return address;
+  const std::string fault = context.webhooks.refusal_of(address);
+  if (fault.empty()) return address;
+  respond_problem(call, ServiceProblem::kWebhookRefused, fault);
+  return std::nullopt;
+}
+
+// All but model and options.
+Submission submission_of(const Call& call, const std::string& key, const std::string& webhook) {
+  const Caller& caller = call.exchange.caller;
+  Submission submission;
+  submission.idempotency_key = key;
+  submission.client = caller.client;
+  submission.owner = caller.owner();
+  submission.limits = limits_of(caller);
+  submission.priority = caller.key ? caller.key->priority : 1;
+  submission.request_id = call.exchange.request_id;
+  submission.traceparent = call.exchange.traceparent;
+  submission.webhook = webhook;
+  return submission;
+}
+
+void respond_outcome(Call& call, const SubmitOutcome& outcome, ServiceContext& context) {
+  call.exchange.job = outcome.job.id;
   switch (outcome.status) {
     case SubmitStatus::kReplayed:
       call.response.set_header("Idempotency-Replayed", "true");
       respond_accepted(call, outcome.job, context);
       return;
-    case SubmitStatus::kAccepted: respond_accepted(call, outcome.job, context); return;
+    case SubmitStatus::kAccepted:
+      context.logger.info("job_accepted",
+                          {{"job", std::string_view(outcome.job.id)},
+                           {"key", std::string_view(outcome.job.owner)},
+                           {"client", std::string_view(call.exchange.client)},
+                           {"request_id", std::string_view(call.exchange.request_id)},
+                           {"trace", trace_id_of(call.exchange.traceparent)}});
+      respond_accepted(call, outcome.job, context);
+      return;
     case SubmitStatus::kKeyConflict:
       respond_problem(call, ServiceProblem::kIdempotencyConflict,
                       "this Idempotency-Key came before with another model or other options; "
                       "take a new key for a new request");
       return;
     case SubmitStatus::kQueueFull: respond_queue_full(call, context); return;
+    case SubmitStatus::kBytesSpent: respond_quota_spent(call); return;
     case SubmitStatus::kStopping: respond_stopping(call); return;
   }
+}
+
+void submit_job(Call& call, ServiceContext& context) {
+  const std::string key = call.header("Idempotency-Key");
+  if (!is_usable_key(key)) return respond_bad_key(call);
+  // Before the body is read: refusing early saves both sides the transfer. A repeated request is
+  // answered however full the queue is.
+  if (context.jobs.stopping()) return respond_stopping(call);
+  const Caller& caller = call.exchange.caller;
+  if (key.empty() && context.jobs.queue_is_full(caller.client, limits_of(caller))) {
+    return respond_queue_full(call, context);
+  }
+  const auto webhook = webhook_of(call, context);
+  if (!webhook) return;
+  const auto request = receive_model_request(call, context, context.max_body_bytes);
+  if (!request) return;
+  Submission submission = submission_of(call, key, *webhook);
+  submission.model = request->model.path();
+  submission.model_format = request->format;
+  submission.model_name = request->model_name;
+  submission.options = request->options;
+  respond_outcome(call, context.jobs.submit(submission), context);
+}
+
+void rerun_job(Call& call, ServiceContext& context) {
+  const std::string key = call.header("Idempotency-Key");
+  if (!is_usable_key(key)) return respond_bad_key(call);
+  const auto job = context.jobs.find(call.id);
+  if (!job) return respond_unknown_job(call);
+  if (context.jobs.stopping()) return respond_stopping(call);
+  if (!is_finished(job->state)) {
+    respond_problem(call, ServiceProblem::kNotFinished, "the job has not ended yet");
+    return;
+  }
+  if (!job->model_kept) {
+    respond_problem(call, ServiceProblem::kModelGone,
+                    "models of jobs without a result are kept for a day; send it again");
+    return;
+  }
+  const auto webhook = webhook_of(call, context);
+  if (!webhook) return;
+  respond_outcome(call, context.jobs.rerun(*job, submission_of(call, key, *webhook)), context);
 }
 
 // False: a parameter is not acceptable, the call is answered.
@@ -124,6 +208,10 @@ bool parse_filter(Call& call, JobFilter& filter) {
 void list_jobs(Call& call, ServiceContext& context) {
   JobFilter filter;
   if (!parse_filter(call, filter)) return;
+  const Caller& caller = call.exchange.caller;
+  if (!caller.sees_all) filter.owner = caller.owner();
+  // For administrators; others see their own jobs whatever they ask for.
+  if (caller.sees_all && call.has_parameter("key")) filter.owner = call.parameter("key");
   const std::size_t limit = filter.limit;
   ++filter.limit;  // one more shows whether there is another page
   auto jobs = context.jobs.list(filter);
@@ -139,10 +227,6 @@ void list_jobs(Call& call, ServiceContext& context) {
   }
   call.response.set_header("Cache-Control", "no-store");
   call.response.set_content(json_text(document), "application/json");
-}
-
-void respond_unknown_job(Call& call) {
-  respond_problem(call, ServiceProblem::kNotFound, "there is no such job; it may have expired");
 }
 
 void show_job(Call& call, ServiceContext& context) {
@@ -181,6 +265,7 @@ void add_job_routes(Router& router, ServiceContext& context) {
   router.add("GET", "/v1/jobs", [&context](Call& call) { list_jobs(call, context); });
   router.add("GET", "/v1/jobs/{id}", [&context](Call& call) { show_job(call, context); });
   router.add("DELETE", "/v1/jobs/{id}", [&context](Call& call) { delete_job(call, context); });
+  router.add("POST", "/v1/jobs/{id}/rerun", [&context](Call& call) { rerun_job(call, context); });
   router.add("POST", "/v1/jobs/{id}/cancel", [&context](Call& call) { cancel_job(call, context); });
 }
 

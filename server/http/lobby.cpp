@@ -41,8 +41,19 @@ std::string address_of(const sockaddr_storage& address, socklen_t length) {
 
 }  // namespace
 
-Connection::Connection(int socket, std::string client, Lobby& lobby)
-    : socket_(socket), client_(std::move(client)), lobby_(lobby) {
+Connection::Connection(int socket,
+                       std::string client,
+                       Lobby& lobby,
+                       std::unique_ptr<TlsSession> tls)
+    : socket_(socket), client_(std::move(client)), lobby_(lobby), tls_(std::move(tls)) {
+}
+
+ssize_t Connection::receive(char* into, std::size_t size) {
+  return tls_ ? tls_->receive(into, size) : ::recv(socket_, into, size, MSG_DONTWAIT);
+}
+
+ssize_t Connection::send(const char* from, std::size_t size) {
+  return tls_ ? tls_->send(from, size) : ::send(socket_, from, size, MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
 Connection::~Connection() {
@@ -53,10 +64,11 @@ Connection::~Connection() {
   if (count != lobby_.clients_.end() && --count->second == 0) lobby_.clients_.erase(count);
 }
 
-Lobby::Lobby(const LobbyLimits& limits, Taker take, Refusal refusal)
+Lobby::Lobby(const LobbyLimits& limits, Taker take, Refusal refusal, const TlsContext* tls)
     : limits_(limits),
       take_(std::move(take)),
       refusal_(std::move(refusal)),
+      tls_(tls),
       epoll_(::epoll_create1(EPOLL_CLOEXEC)),
       wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (epoll_ < 0 || wake_ < 0) throw std::runtime_error("cannot wait for connections");
@@ -170,7 +182,8 @@ void Lobby::admit(int socket, const std::string& client) {
     ++clients_[client];
   }
   ++open_;
-  auto connection = std::make_shared<Connection>(socket, client, *this);
+  auto connection =
+      std::make_shared<Connection>(socket, client, *this, tls_ ? tls_->accept(socket) : nullptr);
   enter(connection, Phase::kIdle);
   watch(connection);
 }
@@ -178,7 +191,8 @@ void Lobby::admit(int socket, const std::string& client) {
 // One short write into the socket's empty buffer: never waits.
 void Lobby::turn_away(int socket) {
   ++refused_;
-  const std::string answer = refusal_();
+  // Within TLS there is no time for an answer.
+  const std::string answer = tls_ ? std::string() : refusal_();
   static_cast<void>(::send(socket, answer.data(), answer.size(), MSG_NOSIGNAL | MSG_DONTWAIT));
   ::shutdown(socket, SHUT_WR);
   std::array<char, kPieceBytes> piece;
@@ -230,6 +244,7 @@ void Lobby::take_returned() {
     leaving.swap(leaving_);
   }
   for (const Held& connection : leaving) {
+    if (connection->tls_) connection->tls_->close();
     ::shutdown(connection->socket(), SHUT_WR);
     connection->bytes = {};
     enter(connection, Phase::kFarewell);
@@ -250,7 +265,9 @@ void Lobby::hear(const Held& connection) {
   std::size_t heard = 0;
   bool ended = false;
   while (true) {
-    const ssize_t got = ::recv(connection->socket(), piece.data(), piece.size(), MSG_DONTWAIT);
+    const ssize_t got = connection->phase_ == Phase::kFarewell
+                            ? ::recv(connection->socket(), piece.data(), piece.size(), MSG_DONTWAIT)
+                            : connection->receive(piece.data(), piece.size());
     if (got < 0 && errno == EINTR) continue;
     if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) break;
     ended = got <= 0;
@@ -261,7 +278,8 @@ void Lobby::hear(const Held& connection) {
       continue;
     }
     connection->bytes.append(piece.data(), static_cast<std::size_t>(got));
-    if (heard >= limits_.head_bytes) break;
+    // What TLS holds back would wake nobody.
+    if (heard >= limits_.head_bytes && !connection->pending()) break;
   }
   if (connection->phase_ != Phase::kFarewell) {
     if (heard > 0) advance(connection);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "server/http/request_head.hpp"
+#include "server/http/tls.hpp"
 
 namespace symcell::server {
 
@@ -35,13 +36,20 @@ class Lobby;
 // An accepted connection, while it waits and while it is served. Closes its socket.
 class Connection {
  public:
-  Connection(int socket, std::string client, Lobby& lobby);
+  Connection(int socket,
+             std::string client,
+             Lobby& lobby,
+             std::unique_ptr<TlsSession> tls = nullptr);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
   [[nodiscard]] int socket() const { return socket_; }
   [[nodiscard]] const std::string& client() const { return client_; }
+  // As recv() and send() with MSG_DONTWAIT and MSG_NOSIGNAL, through TLS where there is some.
+  [[nodiscard]] ssize_t receive(char* bytes, std::size_t size);
+  [[nodiscard]] ssize_t send(const char* bytes, std::size_t size);
+  [[nodiscard]] bool pending() const { return tls_ && tls_->pending(); }
 
   std::string bytes;       // that came and were not taken yet
   HeadReader head;         // of the request that begins with them
@@ -56,6 +64,7 @@ class Connection {
   int socket_;
   std::string client_;
   Lobby& lobby_;
+  std::unique_ptr<TlsSession> tls_;
   Phase phase_ = Phase::kIdle;
   Clock::time_point since_ = Clock::now();  // of the phase
   Clock::time_point deadline_{};
@@ -70,7 +79,8 @@ class Lobby {
   // `take`: is given every connection whose request has come so far that a thread can go on with it,
   // or has a faulty head; false: nobody is free for it. `refusal`: the answer that whoever is turned
   // away gets.
-  Lobby(const LobbyLimits& limits, Taker take, Refusal refusal);
+  // `tls`: for all connections; null: none.
+  Lobby(const LobbyLimits& limits, Taker take, Refusal refusal, const TlsContext* tls);
   ~Lobby();
   Lobby(const Lobby&) = delete;
   Lobby& operator=(const Lobby&) = delete;
@@ -117,6 +127,7 @@ class Lobby {
   const LobbyLimits limits_;
   const Taker take_;
   const Refusal refusal_;
+  const TlsContext* const tls_;
   int epoll_;
   int wake_;
   int listening_ = -1;

@@ -14,6 +14,9 @@ constexpr const char* kMediaType = "application/problem+json";
 
 constexpr std::array kTable{
     ServiceProblemRow{ServiceProblem::kBadRequest, 400, "bad_request", "The request is malformed"},
+    ServiceProblemRow{ServiceProblem::kUnauthorized, 401, "unauthorized", "A key is needed"},
+    ServiceProblemRow{ServiceProblem::kScopeMissing, 403, "scope_missing",
+                      "The key may not do this"},
     ServiceProblemRow{ServiceProblem::kHostNotAllowed, 403, "host_not_allowed",
                       "The server does not go by this name"},
     ServiceProblemRow{ServiceProblem::kCrossSite, 403, "cross_site",
@@ -27,22 +30,29 @@ constexpr std::array kTable{
     ServiceProblemRow{ServiceProblem::kNoResult, 409, "no_result", "The job has no result"},
     ServiceProblemRow{ServiceProblem::kAlreadyFinished, 409, "already_finished",
                       "The job is finished already"},
+    ServiceProblemRow{ServiceProblem::kModelGone, 410, "model_gone",
+                      "The model is not kept any more"},
     ServiceProblemRow{ServiceProblem::kUriTooLong, 414, "uri_too_long", "The address is too long"},
     ServiceProblemRow{ServiceProblem::kBodyTooLarge, 413, "body_too_large",
                       "The request body is too large"},
     ServiceProblemRow{ServiceProblem::kHeadersTooLarge, 431, "headers_too_large",
                       "The headers are too large"},
     ServiceProblemRow{ServiceProblem::kRangeNotSatisfiable, 416, "range_not_satisfiable",
-                      "Ranges are not served"},
+                      "The range lies beyond the end"},
     ServiceProblemRow{ServiceProblem::kExpectationFailed, 417, "expectation_failed",
                       "The expectation cannot be met"},
     ServiceProblemRow{ServiceProblem::kUnsupportedMediaType, 415, "unsupported_media_type",
                       "The body's media type or encoding is not supported"},
     ServiceProblemRow{ServiceProblem::kIdempotencyConflict, 422, "idempotency_conflict",
                       "The idempotency key belongs to a different request"},
+    ServiceProblemRow{ServiceProblem::kWebhookRefused, 422, "webhook_refused",
+                      "The webhook's address is not acceptable"},
     ServiceProblemRow{ServiceProblem::kQueueFull, 429, "queue_full", "The queue is full"},
     ServiceProblemRow{ServiceProblem::kTooManyStreams, 429, "too_many_streams",
                       "Too many calls of this kind"},
+    ServiceProblemRow{ServiceProblem::kRateLimited, 429, "rate_limited", "Too many requests"},
+    ServiceProblemRow{ServiceProblem::kQuotaSpent, 429, "quota_spent",
+                      "The key has sent what it may today"},
     ServiceProblemRow{ServiceProblem::kNotImplemented, 501, "not_implemented",
                       "The server cannot do this"},
     ServiceProblemRow{ServiceProblem::kStopping, 503, "stopping", "The server is stopping"},
@@ -103,6 +113,11 @@ std::string service_problem_json(ServiceProblem problem,
 void respond_problem(Call& call, ServiceProblem problem, std::string_view detail) {
   respond_json(call, service_problem_row(problem).http_status,
                service_problem_json(problem, detail, call.request.path));
+}
+
+void set_retry_after(Call& call, std::int64_t seconds) {
+  call.response.headers.erase("Retry-After");
+  call.response.set_header("Retry-After", std::to_string(seconds));
 }
 
 void respond_error(Call& call, const Error& error, std::string_view pointer_prefix) {

@@ -15,6 +15,8 @@ struct Call;
 // Errors that HTTP has and the library has not; the library's own codes are in api/problem.hpp.
 enum class ServiceProblem : std::uint8_t {
   kBadRequest,
+  kUnauthorized,
+  kScopeMissing,
   kHostNotAllowed,
   kCrossSite,
   kNotFound,
@@ -23,6 +25,7 @@ enum class ServiceProblem : std::uint8_t {
   kNotFinished,
   kNoResult,
   kAlreadyFinished,
+  kModelGone,
   kUriTooLong,
   kBodyTooLarge,
   kHeadersTooLarge,
@@ -30,8 +33,11 @@ enum class ServiceProblem : std::uint8_t {
   kExpectationFailed,
   kUnsupportedMediaType,
   kIdempotencyConflict,
+  kWebhookRefused,
   kQueueFull,
   kTooManyStreams,
+  kRateLimited,
+  kQuotaSpent,
   kNotImplemented,
   kStopping,
   kOverloaded,
@@ -60,6 +66,8 @@ struct ServiceProblemRow {
 
 // Answer the call. Retry-After is added where trying again later helps.
 void respond_problem(Call& call, ServiceProblem problem, std::string_view detail);
+// Instead of what respond_problem() says by itself.
+void set_retry_after(Call& call, std::int64_t seconds);
 void respond_error(Call& call, const Error& error, std::string_view pointer_prefix);
 
 }  // namespace symcell::server

@@ -34,6 +34,8 @@ struct Representation {
   std::string file_name;
   std::string etag_base;  // identifies the bytes before compression
   Producer produce;
+  bool ranged = false;  // the bytes are always the same, and quick to make once more
+  std::optional<std::uint64_t> bytes = {};  // if known already
 };
 
 class ChunkBuffer {
@@ -72,12 +74,80 @@ bool send(const Producer& produce, bool gzip, httplib::DataSink& data) {
     sent = produce([&](std::string_view piece) { return chunks.write(piece); });
   }
   if (!sent || !chunks.flush()) return false;
-  data.done();
+  // Of a body whose length is known the end needs no word.
+  if (data.done) data.done();
   return true;
 }
 
+std::uint64_t count_bytes(const Producer& produce) {
+  std::uint64_t bytes = 0;
+  static_cast<void>(produce([&](std::string_view piece) {
+    bytes += piece.size();
+    return true;
+  }));
+  return bytes;
+}
+
+// Passes on what lies within the range, and ends the producer behind it.
+Producer cut_out(Producer produce, ByteRange range) {
+  return [produce = std::move(produce), range](const PieceSink& sink) {
+    std::uint64_t at = 0;
+    bool taken = true;
+    const bool made = produce([&](std::string_view piece) {
+      const std::uint64_t begin = at;
+      at += piece.size();
+      if (at <= range.first) return true;
+      const std::uint64_t skip = range.first > begin ? range.first - begin : 0;
+      const std::uint64_t end = std::min(at, range.last + 1);
+      taken = sink(piece.substr(skip, end - begin - skip));
+      return taken && at <= range.last;
+    });
+    return taken && (made || at > range.last);
+  };
+}
+
+// With its length, and in part if the request asks for a part.
+void respond_ranged(Call& call, Representation& representation, const std::string& etag) {
+  const std::uint64_t bytes =
+      representation.bytes ? *representation.bytes : count_bytes(representation.produce);
+  call.response.headers.erase("Accept-Ranges");
+  call.response.set_header("Accept-Ranges", "bytes");
+  const std::string if_range = call.header("If-Range");
+  const auto range = if_range.empty() || if_range == etag
+                         ? parse_byte_range(call.header("Range"), bytes)
+                         : RangeRequest{};
+  if (range.unsatisfiable) {
+    call.response.set_header("Content-Range", "bytes */" + std::to_string(bytes));
+    respond_problem(call, ServiceProblem::kRangeNotSatisfiable,
+                    "there are " + std::to_string(bytes) + " bytes");
+    return;
+  }
+  std::uint64_t length = bytes;
+  Producer produce = std::move(representation.produce);
+  if (range.range) {
+    const ByteRange sent = *range.range;
+    length = sent.last - sent.first + 1;
+    call.response.status = 206;
+    call.response.set_header("Content-Range", "bytes " + std::to_string(sent.first) + "-" +
+                                                  std::to_string(sent.last) + "/" +
+                                                  std::to_string(bytes));
+    produce = cut_out(std::move(produce), sent);
+  }
+  if (length == 0) {
+    call.response.set_content("", representation.media_type.c_str());
+    return;
+  }
+  call.response.set_content_provider(
+      length, representation.media_type,
+      [produce = std::move(produce)](std::size_t, std::size_t, httplib::DataSink& data) {
+        return send(produce, false, data);
+      });
+}
+
 void respond_representation(Call& call, Representation representation) {
-  const bool gzip = accepts_gzip(call.exchange.accept_encoding);
+  // A part of what is compressed is of no use to anybody.
+  const bool part = representation.ranged && call.request.has_header("Range");
+  const bool gzip = !part && accepts_gzip(call.exchange.accept_encoding);
   const std::string etag = "\"" + representation.etag_base + (gzip ? "-gzip\"" : "\"");
   call.response.set_header("ETag", etag);
   call.response.set_header("Vary", "Accept, Accept-Encoding");
@@ -89,6 +159,7 @@ void respond_representation(Call& call, Representation representation) {
   if (gzip) call.response.set_header("Content-Encoding", "gzip");
   call.response.set_header("Content-Disposition",
                            "attachment; filename=\"" + representation.file_name + "\"");
+  if (representation.ranged && !gzip) return respond_ranged(call, representation, etag);
   const auto provider = [produce = std::move(representation.produce), gzip](
                             std::size_t, httplib::DataSink& data) {
     return send(produce, gzip, data);
@@ -210,8 +281,12 @@ void send_mesh(Call& call, ServiceContext& context, MeshPart part) {
   const std::string format_name(mesh_format_name(*format));
   const bool head = call.request.method == "HEAD";
   std::shared_ptr<const SymmetryCellMesh> cell;
+  // Raw binary files cost little more than copying, so that they are made once more to be measured.
+  const bool ranged =
+      (*format == MeshFormat::kVtu && options->vtu_encoding == VtuEncoding::kAppendedRaw) ||
+      (*format == MeshFormat::kStl && !options->stl_ascii);
   // Read before the answer begins, so that a damaged archive is an error and no broken download.
-  if (!head || takes_deck_options(*format)) {
+  if (!head || ranged || takes_deck_options(*format)) {
     cell = std::make_shared<const SymmetryCellMesh>(read_cell(*job, context.jobs.files()));
   }
   const auto fits = cell ? check_mesh_output(*cell, part, *format, *options)
@@ -227,7 +302,8 @@ void send_mesh(Call& call, ServiceContext& context, MeshPart part) {
   // The bytes follow from the job, the form and the program's version.
   mesh.etag_base = job->id + "-" + part_name + "-" + format_name + variant_of(call, *format) + "-" +
                    std::string(version());
-  if (head) {
+  mesh.ranged = ranged;
+  if (head && !ranged) {
     mesh.produce = [](const PieceSink&) { return true; };
   } else {
     mesh.produce = [cell, part, format = *format, options = *options](const PieceSink& sink) {
@@ -238,7 +314,7 @@ void send_mesh(Call& call, ServiceContext& context, MeshPart part) {
 }
 
 Producer file_producer(const std::filesystem::path& path) {
-  // Opened now: the job may be deleted while its file is on its way.
+  // Opened now: the job may be deleted while its file is on its way. Read once: its size is known.
   auto file = std::make_shared<FileReader>(path, Links::kRefuse);
   return [file = std::move(file)](const PieceSink& sink) {
     for (std::string_view piece = file->next(); !piece.empty(); piece = file->next()) {
@@ -261,8 +337,13 @@ void send_statistics(Call& call, ServiceContext& context) {
   const auto produce = [text = read_statistics(*job, context.jobs.files())](const PieceSink& sink) {
     return sink(text);
   };
-  respond_representation(call,
-                         {"application/json", "statistics.json", job->id + "-statistics", produce});
+  respond_representation(
+      call, {"application/json", "statistics.json", job->id + "-statistics", produce, true});
+}
+
+void respond_model_gone(Call& call) {
+  respond_problem(call, ServiceProblem::kModelGone,
+                  "models of jobs without a result are kept for a day");
 }
 
 void send_model(Call& call, ServiceContext& context) {
@@ -273,12 +354,14 @@ void send_model(Call& call, ServiceContext& context) {
   }
   const ModelFormatInfo& format = model_format_info(job->model_format);
   if (!check_accepts(call, format.media_type)) return;
+  if (!job->model_kept) return respond_model_gone(call);
   check_model(*job, context.jobs.files());
   std::string media_type(format.media_type);
   if (media_type == "text/plain") media_type += "; charset=utf-8";
   respond_representation(call,
                          {media_type, "model" + std::string(format.ending), job->id + "-model",
-                          file_producer(context.jobs.files().model(job->id))});
+                          file_producer(context.jobs.files().model(job->id)), true,
+                          static_cast<std::uint64_t>(job->model_bytes)});
 }
 
 // The model as a picture, whatever became of the job.
@@ -289,6 +372,7 @@ void send_surface(Call& call, ServiceContext& context) {
     return;
   }
   if (!check_accepts(call, "model/gltf-binary")) return;
+  if (!job->model_kept) return respond_model_gone(call);
   if (static_cast<std::size_t>(job->model_bytes) > kMaxInspectBytes) {
     respond_problem(call, ServiceProblem::kBodyTooLarge,
                     "models above 64 MiB are not drawn; fetch the cell or the model");

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "server/http/call.hpp"
+#include "server/http/gate.hpp"
 #include "server/http/problem_response.hpp"
 #include "server/jobs/job_store.hpp"
 #include "server/jobs/stored_files.hpp"
@@ -40,6 +41,9 @@ bool matches(const std::vector<std::string>& route,
   return true;
 }
 
+// Of an id, in the log: anything may come as one.
+constexpr std::size_t kIdChars = 40;
+
 bool is_disk_full(const std::system_error& error) {
   return error.code().category() == std::generic_category() &&
          (error.code().value() == ENOSPC || error.code().value() == EDQUOT);
@@ -66,6 +70,7 @@ void Router::dispatch(Call& call) const {
     call.exchange.route = route.path;
     if (route.method == method) {
       call.id = std::move(id);
+      if (route.path.starts_with("/v1/jobs/{id}")) call.exchange.job = call.id.substr(0, kIdChars);
       run(route, call);
       return;
     }
@@ -92,6 +97,7 @@ void Router::refuse_method(Call& call, const std::string& allowed) const {
 
 void Router::run(const Route& route, Call& call) const {
   try {
+    if (gate_ != nullptr && !gate_->admit(call, route.path)) return;
     route.handler(call);
     return;
   } catch (const StoreError& error) {

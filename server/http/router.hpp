@@ -15,6 +15,7 @@
 namespace symcell::server {
 
 struct Call;
+class Gate;
 using RouteHandler = std::function<void(Call&)>;
 
 class Router {
@@ -22,6 +23,8 @@ class Router {
   // Both must outlive the router.
   Router(Metrics& metrics, Logger& logger) : metrics_(metrics), logger_(logger) {}
 
+  // Asked before every handler; false: the call is answered. The gate must outlive the router.
+  void set_gate(const Gate* gate) { gate_ = gate; }
   // `path`: segments between slashes, one of which may be "{id}". GET serves HEAD too.
   void add(std::string method, std::string path, RouteHandler handler);
 
@@ -42,6 +45,7 @@ class Router {
 
   Metrics& metrics_;
   Logger& logger_;
+  const Gate* gate_ = nullptr;
   std::vector<Route> routes_;
 };
 

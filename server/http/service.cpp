@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <thread>
 
+#include "api/version.hpp"
 #include "server/http/router.hpp"
 #include "server/http/service_context.hpp"
+#include "server/http/webhook_sender.hpp"
 
 namespace symcell::server {
 namespace {
@@ -27,14 +29,20 @@ void declare_metrics(Metrics& metrics) {
                           "Connections refused because all threads and places were taken.");
   metrics.declare_counter("symcell_request_errors_total",
                           "Requests refused for their model or options, by error code.");
-  metrics.declare_counter("symcell_job_errors_total", "Failed jobs by error code.");
-  metrics.declare_histogram("symcell_job_duration_seconds",
-                            "Time jobs ran, by the state they ended in.",
-                            {0.01, 0.05, 0.25, 1, 5, 30, 120, 600, 3600});
-  metrics.declare_counter("symcell_job_write_retries_total",
-                          "Times that a job's state or results could not be written and were tried "
-                          "again.");
-  metrics.declare_counter("symcell_internal_errors_total", "Bugs and failures of the machine.");
+  metrics.declare_gauge("symcell_jobs", "Stored jobs by state.");
+  metrics.declare_gauge("symcell_stored_bytes", "Bytes of all models and results.");
+  metrics.declare_gauge("symcell_free_bytes", "Room left where they are kept.");
+  metrics.declare_gauge("symcell_queue_length", "Jobs that wait for a worker.");
+  metrics.declare_gauge("symcell_queue_age_seconds", "How long the job waits that waits longest.");
+  metrics.declare_gauge("symcell_queue_limit", "Jobs that may wait.");
+  metrics.declare_gauge("symcell_workers", "Jobs that may run at once.");
+  metrics.declare_gauge("symcell_workers_busy", "Jobs that run now.");
+  metrics.declare_gauge("symcell_jobs_overdue", "Jobs that run beyond their time limit.");
+  metrics.declare_gauge("symcell_http_requests_in_flight", "Requests being served.");
+  metrics.declare_gauge("symcell_streams_open", "Event streams and waits for a job.");
+  metrics.declare_gauge("symcell_build_info", "1, with the program's version as a label.");
+  metrics.set("symcell_build_info", {{"version", version()}}, 1);
+  declare_process_metrics(metrics);
 }
 
 }  // namespace
@@ -44,18 +52,25 @@ struct Service::Impl {
       : settings(service_settings),
         logger(service_logger),
         jobs(settings.data_directory, settings.jobs, engine, metrics, logger),
+        webhook_rules(settings.webhooks),
+        webhooks(settings.webhooks, webhook_rules, jobs, metrics, logger),
         streams(long_call_places(settings.http.patient_threads)),
         inspections(inspection_places(settings.http.threads)),
+        gate(settings.access, settings.http.host, jobs, metrics, logger),
         router(metrics, logger),
         http(settings.http, router, metrics, logger),
-        context{jobs,    metrics,     logger,          settings.http.max_body_bytes,
-                streams, inspections, http.in_flight()} {
+        context{jobs,    metrics,     logger,           settings.http.max_body_bytes,
+                streams, inspections, http.in_flight(), webhook_rules} {
     declare_metrics(metrics);
+    engine.declare_metrics(metrics);
+    router.set_gate(&gate);
+    add_health_routes(router, context);
+    if (settings.role == ServerRole::kWorker) return;
     add_job_routes(router, context);
     add_result_routes(router, context);
     add_event_routes(router, context);
     add_inspect_routes(router, context);
-    add_health_routes(router, context);
+    add_key_routes(router, context);
     add_page_routes(router);
   }
 
@@ -63,8 +78,11 @@ struct Service::Impl {
   Logger& logger;
   Metrics metrics;
   JobService jobs;
-  Slots streams;
+  WebhookRules webhook_rules;
+  WebhookSender webhooks;
+  SharedSlots streams;
   Slots inspections;
+  Gate gate;
   Router router;
   HttpServer http;
   ServiceContext context;
@@ -82,6 +100,7 @@ Service::~Service() {
 int Service::start() {
   const int port = impl_->http.bind();
   impl_->jobs.start();
+  impl_->webhooks.start();
   impl_->acceptor = std::thread([this] { impl_->http.run(); });
   return port;
 }
@@ -89,9 +108,14 @@ int Service::start() {
 bool Service::stop() {
   impl_->jobs.begin_stop();
   const bool jobs_stopped = impl_->jobs.finish_stop(impl_->settings.grace);
+  impl_->webhooks.stop();
   impl_->http.stop();
   if (impl_->acceptor.joinable()) impl_->acceptor.join();
   return jobs_stopped;
+}
+
+void Service::reload_tls() {
+  impl_->http.reload_tls();
 }
 
 JobService& Service::jobs() {

@@ -8,13 +8,25 @@
 #include <string>
 
 #include "server/base/log.hpp"
+#include "server/http/gate.hpp"
 #include "server/http/http_server.hpp"
+#include "server/http/webhook_rules.hpp"
 #include "server/jobs/job_service.hpp"
 
 namespace symcell::server {
 
+// What a server does of what all do together.
+enum class ServerRole : std::uint8_t {
+  kAll,
+  kApi,     // answers callers, and leaves meshing to others
+  kWorker,  // meshes, and answers probes alone
+};
+
 struct ServiceSettings {
+  ServerRole role = ServerRole::kAll;
   HttpSettings http;
+  AccessRules access;
+  WebhookSettings webhooks;
   JobLimits jobs;
   std::filesystem::path data_directory;
   std::chrono::milliseconds grace{10'000};  // for running jobs when the server stops
@@ -36,6 +48,9 @@ class Service {
   // False: an engine ignores its cancellation and its thread cannot be joined; the process should
   // exit without destroying the service.  All jobs are safe either way.
   [[nodiscard]] bool stop();
+
+  // See HttpServer.
+  void reload_tls();
 
   [[nodiscard]] JobService& jobs();
 

@@ -7,6 +7,7 @@
 #include "server/base/log.hpp"
 #include "server/base/metrics.hpp"
 #include "server/base/slots.hpp"
+#include "server/http/webhook_rules.hpp"
 #include "server/jobs/job_service.hpp"
 
 namespace symcell::server {
@@ -20,9 +21,10 @@ struct ServiceContext {
   std::size_t max_body_bytes;
   // Places for calls that hold an HTTP thread for long; fewer than there are threads, so that
   // other calls always find one.
-  Slots& streams;      // event streams and waits for a job
-  Slots& inspections;  // work on the processor
+  SharedSlots& streams;  // event streams and waits for a job
+  Slots& inspections;    // work on the processor
   const std::atomic<std::size_t>& requests_in_flight;
+  const WebhookRules& webhooks;
 };
 
 // Each adds the routes of one topic; `context` must outlive the router.
@@ -30,6 +32,7 @@ void add_job_routes(Router& router, ServiceContext& context);
 void add_result_routes(Router& router, ServiceContext& context);
 void add_event_routes(Router& router, ServiceContext& context);
 void add_inspect_routes(Router& router, ServiceContext& context);
+void add_key_routes(Router& router, ServiceContext& context);
 void add_health_routes(Router& router, ServiceContext& context);
 void add_page_routes(Router& router);
 

@@ -7,11 +7,12 @@
 #include <array>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "server/base/clock.hpp"
 #include "server/base/identifiers.hpp"
-#include "server/jobs/sqlite_job_store.hpp"
+#include "server/jobs/sqlite_schema.hpp"
 
 namespace symcell::server {
 namespace {
@@ -82,8 +83,12 @@ bool is_name_of_a_body(const Directory::Entry& entry) {
 
 }  // namespace
 
-DataDirectory::DataDirectory(const fs::path& path, Logger& logger)
+DataDirectory::DataDirectory(const fs::path& path, Logger& logger, bool shared)
     : logger_(logger), root_(std::make_unique<Directory>(make_root(path))) {
+  if (shared) {
+    settle_shared_identity();
+    return;
+  }
   // Looked at before anything is created: a folder that is not ours stays as it is.
   if (!read_marker(*root_) && !root_->has(kDatabase)) refuse_if_foreign(*root_);
   lock();
@@ -97,7 +102,7 @@ DataDirectory::DataDirectory(const fs::path& path, Logger& logger)
 }
 
 DataDirectory::~DataDirectory() {
-  ::close(lock_descriptor_);
+  if (lock_descriptor_ >= 0) ::close(lock_descriptor_);
 }
 
 // Two servers on one directory would run every job twice. The lock dies with its process.
@@ -105,9 +110,28 @@ void DataDirectory::lock() {
   lock_descriptor_ = root_->open_or_create_file(kLock, lock_is_new_);
   if (::flock(lock_descriptor_, LOCK_EX | LOCK_NB) != 0) {
     ::close(lock_descriptor_);
-    throw std::runtime_error("another server uses " + root_->path().string() +
-                             "; choose another --data-dir");
+    throw DirectoryInUse("another server uses " + root_->path().string() +
+                         "; choose another --data-dir");
   }
+}
+
+void DataDirectory::settle_shared_identity() {
+  if (root_->has(kDatabase)) {
+    throw std::runtime_error(root_->path().string() +
+                             " holds the job database of a single server; servers of a PostgreSQL "
+                             "database need a folder of their own");
+  }
+  if (!read_marker(*root_)) {
+    refuse_if_foreign(*root_);
+    // Two servers may start at once: the lock makes one of them first.
+    lock();
+    if (!read_marker(*root_)) {
+      id_ = make_random_hex() + make_random_hex();
+      write_marker();
+    }
+    ::close(std::exchange(lock_descriptor_, -1));
+  }
+  id_ = *read_marker(*root_);
 }
 
 void DataDirectory::settle_identity() {

@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -24,13 +25,21 @@
 
 namespace symcell::server {
 
+// Another server has the directory.
+class DirectoryInUse : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 class DataDirectory {
  public:
   // Creates the directory, or takes it: one with our marker, one without that holds a job database
   // of ours (an earlier version wrote no marker), or an empty one. A damaged database goes to the
   // quarantine. Throws std::runtime_error: anything else, another server's lock, a database with
   // another id.
-  DataDirectory(const std::filesystem::path& path, Logger& logger);
+  // `shared`: by servers of one PostgreSQL database. Then nothing is locked, no database is looked at
+  // here, and nothing of what lies there is put away.
+  DataDirectory(const std::filesystem::path& path, Logger& logger, bool shared = false);
   ~DataDirectory();
   DataDirectory(const DataDirectory&) = delete;
   DataDirectory& operator=(const DataDirectory&) = delete;
@@ -52,6 +61,7 @@ class DataDirectory {
  private:
   void lock();
   void settle_identity();
+  void settle_shared_identity();
   void write_marker() const;
   // Puts an entry of `from`, which is the root's folder `folder` ("": the root), in quarantine.
   void put_away(const Directory& from,

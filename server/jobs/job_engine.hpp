@@ -13,6 +13,7 @@
 #include "core/base/error.hpp"
 #include "core/base/execution_context.hpp"
 #include "core/model/mesh_options.hpp"
+#include "server/base/metrics.hpp"
 
 namespace symcell::server {
 
@@ -62,8 +63,9 @@ class JobEngine {
 
   // Why it can run nothing at present; empty if it can.
   [[nodiscard]] virtual std::string fault() const { return {}; }
-  // Its own figures in the text format of Prometheus.
-  virtual void append_metrics(std::string& text) const { static_cast<void>(text); }
+  // Its own figures, declared once and reported whenever somebody asks for them.
+  virtual void declare_metrics(Metrics& metrics) const { static_cast<void>(metrics); }
+  virtual void report_metrics(Metrics& metrics) const { static_cast<void>(metrics); }
 };
 
 }  // namespace symcell::server

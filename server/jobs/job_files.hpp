@@ -7,18 +7,21 @@
 //   jobs/<id>/cell               the compact symmetry cell (api/formats/cell_archive.hpp)
 //   jobs/<id>/statistics.json
 //   jobs/<id>/*.part             results that are being written
+// Where servers share the folder: cell.<attempt> and statistics.<attempt>.json.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <string_view>
 
+#include "server/jobs/job.hpp"
+
 namespace symcell::server {
 
 class JobFiles {
  public:
   // Creates the folders, readable by their owner only.
-  explicit JobFiles(std::filesystem::path data_directory);
+  explicit JobFiles(std::filesystem::path data_directory, bool shared = false);
 
   [[nodiscard]] std::filesystem::path database() const { return root_ / "jobs.sqlite"; }
   [[nodiscard]] std::filesystem::path faults() const { return root_ / "faults"; }
@@ -29,6 +32,10 @@ class JobFiles {
   [[nodiscard]] std::filesystem::path statistics(std::string_view id) const {
     return job(id) / "statistics.json";
   }
+  // Of the job's last run. Where servers share the folder each run has files of its own: one that was
+  // given up may still write.
+  [[nodiscard]] std::filesystem::path cell(const Job& job) const;
+  [[nodiscard]] std::filesystem::path statistics(const Job& job) const;
   [[nodiscard]] static std::filesystem::path partial(std::filesystem::path file) {
     return file += ".part";
   }
@@ -37,11 +44,14 @@ class JobFiles {
   void adopt_model(const std::filesystem::path& arrived, std::string_view id) const;
   // Removes everything of a job; never throws: what cannot be removed now goes at the next start.
   void remove(std::string_view id) const noexcept;
+  // The model alone.
+  void remove_model(std::string_view id) const noexcept;
 
  private:
   [[nodiscard]] std::filesystem::path job(std::string_view id) const { return root_ / "jobs" / id; }
 
   std::filesystem::path root_;
+  bool shared_;
 };
 
 }  // namespace symcell::server

@@ -1,7 +1,6 @@
 #include "server/jobs/job_runner.hpp"
 
 #include <algorithm>
-#include <boost/asio/post.hpp>
 #include <cerrno>
 #include <exception>
 #include <new>
@@ -11,7 +10,6 @@
 
 #include "api/problem.hpp"
 #include "api/schema/options.hpp"
-#include "core/base/assert.hpp"
 #include "server/base/clock.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identifiers.hpp"
@@ -23,6 +21,14 @@ namespace {
 // How long a cancelled engine may take before stop() gives it up; it promises one second.
 constexpr std::chrono::seconds kCancelPatience{5};
 
+// How often a shared store is asked for jobs that nobody told of, and told of runs (a lease is 15 s).
+constexpr std::chrono::seconds kPollInterval{5};
+constexpr std::chrono::milliseconds kKeepInterval{1000};
+// What a job may take beyond its time limit: the engine kills its process within a second.
+constexpr double kOverdueSeconds = 60;
+// Between two runs of a job whose results the disk did not take: each costs the whole work.
+constexpr std::chrono::milliseconds kFirstMeshPause{500};
+constexpr std::chrono::milliseconds kLongestMeshPause{30'000};
 // Between two tries of what the store or the disk refused.
 constexpr std::chrono::milliseconds kFirstPause{50};
 constexpr std::chrono::milliseconds kLongestPause{1000};
@@ -58,48 +64,153 @@ std::int64_t file_bytes(const std::filesystem::path& file) {
 
 }  // namespace
 
-JobRunner::JobRunner(RunnerParts parts, std::size_t workers, std::size_t queue_limit)
-    : parts_(parts), workers_(workers), queue_limit_(queue_limit), pool_(workers) {
+JobRunner::JobRunner(RunnerParts parts, std::size_t workers) : parts_(parts), workers_(workers) {
+}
+
+void JobRunner::declare_metrics(Metrics& metrics) {
+  metrics.declare_counter("symcell_job_errors_total", "Failed jobs by error code.");
+  metrics.declare_histogram("symcell_job_duration_seconds",
+                            "Time jobs ran, by the state they ended in.",
+                            {0.01, 0.05, 0.25, 1, 5, 30, 120, 600, 3600});
+  metrics.declare_histogram("symcell_job_wait_seconds", "Time jobs waited before they ran.",
+                            {0.01, 0.05, 0.25, 1, 5, 30, 120, 600, 3600});
+  metrics.declare_histogram("symcell_phase_duration_seconds",
+                            "Time of a phase of a job that succeeded.",
+                            {0.001, 0.01, 0.05, 0.25, 1, 5, 30, 120, 600, 3600});
+  metrics.declare_counter("symcell_elements_total",
+                          "Elements of the cells of jobs that succeeded.");
+  metrics.declare_counter("symcell_job_write_retries_total",
+                          "Times that a job's state or results could not be written and were tried "
+                          "again.");
+  metrics.declare_counter("symcell_jobs_rescued_total",
+                          "Runs queued again because their server gave no sign of life.");
+  metrics.declare_counter("symcell_internal_errors_total", "Bugs and failures of the machine.");
 }
 
 JobRunner::~JobRunner() {
-  pool_.join();
+  if (parts_.store.shared()) parts_.store.listen(nullptr);
+  static_cast<void>(stop(std::chrono::milliseconds(0)));
+  for (std::thread& thread : threads_) {
+    if (thread.joinable()) thread.join();
+  }
+  if (keeper_.joinable()) keeper_.join();
 }
 
-bool JobRunner::try_reserve() {
-  const std::lock_guard lock(mutex_);
-  if (stopping_ || waiting_.size() + reserved_ >= queue_limit_) return false;
-  ++reserved_;
-  return true;
+void JobRunner::start() {
+  threads_.reserve(workers_);
+  for (std::size_t i = 0; i < workers_; ++i) threads_.emplace_back([this] { work(); });
+  if (!parts_.store.shared()) return;
+  keeper_ = std::thread([this] { keep_runs(); });
+  parts_.store.listen([this] {
+    poke();
+    parts_.changes.notify();
+  });
 }
 
-void JobRunner::release_reservation() {
-  const std::lock_guard lock(mutex_);
-  SYMCELL_ASSERT(reserved_ > 0);
-  --reserved_;
+void JobRunner::keep_runs() {
+  while (true) {
+    keep_runs_once();
+    std::unique_lock lock(mutex_);
+    if (stopped_.wait_for(lock, kKeepInterval, [this] { return stopping_ && running_.empty(); })) {
+      return;
+    }
+  }
 }
 
-void JobRunner::enqueue_reserved(std::string id) {
+void JobRunner::keep_runs_once() {
+  std::vector<RunState> runs;
   {
     const std::lock_guard lock(mutex_);
-    SYMCELL_ASSERT(reserved_ > 0);
-    --reserved_;
-    waiting_.push_back(std::move(id));
+    for (const auto& [id, running] : running_) {
+      runs.push_back({id, running->attempt, running->context.progress()});
+    }
   }
-  post();
+  try {
+    const std::vector<RunOrder> orders =
+        runs.empty() ? std::vector<RunOrder>() : parts_.store.keep(runs);
+    const std::size_t rescued = parts_.store.rescue();
+    if (rescued > 0) {
+      parts_.metrics.count("symcell_jobs_rescued_total", {}, static_cast<double>(rescued));
+      parts_.logger.warning("jobs_rescued", {{"count", static_cast<std::int64_t>(rescued)}});
+      poke();
+    }
+    const std::lock_guard lock(mutex_);
+    for (const RunOrder& order : orders) {
+      const auto running = running_.find(order.id);
+      if (running != running_.end()) running->second->context.cancel();
+    }
+  } catch (const std::exception&) {
+    // Told by the store's watch. Whoever else runs these jobs meanwhile is told apart by its attempt.
+  }
 }
 
-void JobRunner::enqueue_recovered(std::string id) {
+void JobRunner::poke() {
   {
     const std::lock_guard lock(mutex_);
-    waiting_.push_back(std::move(id));
+    ++pokes_;
   }
-  post();
+  wanted_.notify_one();
 }
 
-// One task a job: the pool's own queue is no longer than ours.
-void JobRunner::post() {
-  boost::asio::post(pool_, [this] { run_next(); });
+bool JobRunner::wait_for_work(std::uint64_t seen) {
+  const auto news = [&] { return stopping_ || pokes_ != seen; };
+  std::unique_lock lock(mutex_);
+  // Word from other servers may be lost with a connection.
+  if (parts_.store.shared()) {
+    wanted_.wait_for(lock, kPollInterval, news);
+  } else {
+    wanted_.wait(lock, news);
+  }
+  return !stopping_;
+}
+
+void JobRunner::work() {
+  while (true) {
+    std::uint64_t seen = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      if (stopping_) return;
+      seen = pokes_;
+      ++claiming_;
+    }
+    const std::optional<Job> job = claim();
+    if (job) {
+      run(*job);
+      continue;
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      if (--claiming_ == 0) cancelled_meanwhile_.clear();
+    }
+    if (!wait_for_work(seen)) return;
+  }
+}
+
+std::optional<Job> JobRunner::claim() {
+  std::optional<Job> job;
+  try {
+    static_cast<void>(persist({}, [&] { job = parts_.store.claim(now_ms()); }));
+  } catch (const std::exception& exception) {
+    // A row that nobody can read, or worse: the others are served when the next job comes.
+    parts_.logger.error("job_claim_failed", {{"what", exception.what()}});
+    parts_.metrics.count("symcell_internal_errors_total", {{"where", "job"}});
+  }
+  return job;
+}
+
+std::shared_ptr<JobRunner::Running> JobRunner::enter(const Job& job) {
+  const std::string& id = job.id;
+  auto running = std::make_shared<Running>();
+  running->attempt = job.attempt;
+  const std::lock_guard lock(mutex_);
+  running_.emplace(id, running);
+  if (cancelled_meanwhile_.erase(id) > 0) running->context.cancel();
+  if (--claiming_ == 0) cancelled_meanwhile_.clear();
+  if (stopping_) {
+    running->requeue = true;
+    running->context.cancel();
+  }
+  return running;
 }
 
 JobRunner::CancelResult JobRunner::cancel(std::string_view id) {
@@ -108,10 +219,8 @@ JobRunner::CancelResult JobRunner::cancel(std::string_view id) {
     running->second->context.cancel();
     return CancelResult::kStopping;
   }
-  const auto waiting = std::ranges::find(waiting_, id);
-  if (waiting == waiting_.end()) return CancelResult::kNotHere;
-  waiting_.erase(waiting);
-  return CancelResult::kDequeued;
+  if (claiming_ > 0) cancelled_meanwhile_.emplace(id);
+  return CancelResult::kNotHere;
 }
 
 std::optional<Progress> JobRunner::progress(std::string_view id) const {
@@ -121,9 +230,13 @@ std::optional<Progress> JobRunner::progress(std::string_view id) const {
   return running->second->context.progress();
 }
 
-std::size_t JobRunner::queued() const {
+std::size_t JobRunner::overdue() const {
   const std::lock_guard lock(mutex_);
-  return waiting_.size();
+  const std::int64_t now = steady_ms();
+  return static_cast<std::size_t>(std::ranges::count_if(running_, [&](const auto& entry) {
+    const double ran_s = static_cast<double>(now - entry.second->started_steady_ms) / 1000;
+    return ran_s > entry.second->limit_s + kOverdueSeconds;
+  }));
 }
 
 std::size_t JobRunner::running() const {
@@ -135,6 +248,7 @@ bool JobRunner::stop(std::chrono::milliseconds grace) {
   std::unique_lock lock(mutex_);
   stopping_ = true;
   stopped_.notify_all();
+  wanted_.notify_all();
   const auto none_runs = [this] { return running_.empty(); };
   if (!idle_.wait_for(lock, grace, none_runs)) {
     for (const auto& [id, running] : running_) {
@@ -144,23 +258,17 @@ bool JobRunner::stop(std::chrono::milliseconds grace) {
     if (!idle_.wait_for(lock, kCancelPatience, none_runs)) return false;
   }
   lock.unlock();
-  pool_.join();
+  for (std::thread& thread : threads_) {
+    if (thread.joinable()) thread.join();
+  }
   return true;
 }
 
-void JobRunner::run_next() {
-  std::string id;
-  auto running = std::make_shared<Running>();
-  {
-    const std::lock_guard lock(mutex_);
-    // Fewer jobs than tasks: some were cancelled while they waited.
-    if (stopping_ || waiting_.empty()) return;
-    id = std::move(waiting_.front());
-    waiting_.pop_front();
-    running_.emplace(id, running);
-  }
+void JobRunner::run(const Job& job) {
+  const std::string& id = job.id;
+  const auto running = enter(job);
   try {
-    execute(id, *running);
+    execute(job, *running);
   } catch (const std::exception& exception) {
     // A failure that does not pass. The row stays as it is; the next start requeues the job.
     parts_.logger.error("job_bookkeeping_failed", {{"job", id}, {"what", exception.what()}});
@@ -174,6 +282,8 @@ void JobRunner::run_next() {
   }
   remove_files_if_deleted(id);
   parts_.changes.notify();
+  // Another of this client's jobs may have waited for this one.
+  if (job.most_running > 0) poke();
 }
 
 // Whoever deletes a job leaves its files to the worker that still holds it; by now nobody does.
@@ -215,26 +325,28 @@ void JobRunner::count_lost_worker(const std::string& id) {
   static_cast<void>(persist(id, [&] { parts_.store.count_lost_worker(id); }));
 }
 
-bool JobRunner::publish(const std::string& id) {
-  return persist(id, [&] {
-    publish_file(parts_.files.statistics(id));
-    publish_file(parts_.files.cell(id));
+bool JobRunner::publish(const Job& job) {
+  return persist(job.id, [&] {
+    publish_file(parts_.files.statistics(job));
+    publish_file(parts_.files.cell(job));
   });
 }
 
-void JobRunner::execute(const std::string& id, Running& running) {
-  std::optional<Job> job;
-  const bool asked =
-      persist(id, [&] { job = parts_.store.apply(id, JobEvent::kStart, {.time_ms = now_ms()}); });
-  if (!asked) return;  // the row says queued: the next start takes it up
-  if (!job) return;    // deleted between the queue and here
-  running.started_steady_ms = steady_ms();
-  parts_.logger.info("job_started", {{"job", id}});
+void JobRunner::execute(const Job& job, Running& running) {
+  const std::string& id = job.id;
+  const double waited_s =
+      static_cast<double>(job.started_ms.value_or(job.created_ms) - job.created_ms) / 1000;
+  parts_.metrics.observe("symcell_job_wait_seconds", waited_s);
+  parts_.logger.info("job_started", {{"job", id},
+                                     {"attempt", std::int64_t{job.attempt}},
+                                     {"waited", waited_s},
+                                     {"request_id", std::string_view(job.request_id)},
+                                     {"trace", trace_id_of(job.traceparent)}});
   parts_.changes.notify();
 
   Result<void> result;
   try {
-    result = run_engine(*job, running);
+    result = run_engine(job, running);
   } catch (const std::bad_alloc&) {
     result = fail(ErrorCode::kMemoryLimit,
                   "not enough memory for this mesh; relax max_area, max_edge or min_angle");
@@ -243,7 +355,7 @@ void JobRunner::execute(const std::string& id, Running& running) {
     parts_.metrics.count("symcell_internal_errors_total", {{"where", "job"}});
     result = fail(ErrorCode::kInternal, "internal error; the server's log tells more under " + id);
   }
-  settle(*job, running, result);
+  settle(job, running, result);
 }
 
 Result<void> JobRunner::run_engine(const Job& job, Running& running) {
@@ -253,14 +365,15 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
   work.model = parts_.files.model(job.id);
   work.model_format = job.model_format;
   work.options = *options;
-  work.cell = JobFiles::partial(parts_.files.cell(job.id));
-  work.statistics = JobFiles::partial(parts_.files.statistics(job.id));
+  work.cell = JobFiles::partial(parts_.files.cell(job));
+  work.statistics = JobFiles::partial(parts_.files.statistics(job));
   work.lost_workers = job.lost_workers;
   work.on_lost_worker = [this, &job] { count_lost_worker(job.id); };
   // Left by a run that died.
   std::filesystem::remove(work.cell);
   std::filesystem::remove(work.statistics);
 
+  running.limit_s = options->time_limit_s;
   running.context.set_time_limit(options->time_limit_s);
   running.context.set_max_elements(options->max_elements);
   SYMCELL_TRY(running.context.check());
@@ -270,8 +383,29 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
     return fail(ErrorCode::kInternal,
                 std::string(damaged.what()) + "; the server's disk is at fault: submit it again");
   }
-  SYMCELL_TRY(parts_.engine.run(work, running.context));
-  if (!publish(job.id)) {
+  // Again while the disk takes nothing that the engine writes.
+  for (std::chrono::milliseconds pause = kFirstMeshPause;;
+       pause = std::min(2 * pause, kLongestMeshPause)) {
+    const Result<void> meshed = parts_.engine.run(work, running.context);
+    if (meshed) break;
+    if (meshed.error().code != ErrorCode::kWriteFailed) return meshed;
+    parts_.metrics.count("symcell_job_write_retries_total");
+    parts_.logger.warning("job_write_failed",
+                          {{"job", job.id}, {"what", std::string_view(meshed.error().message)}});
+    // Part of what the disk has no room for.
+    std::error_code ignored;
+    std::filesystem::remove(work.cell, ignored);
+    std::filesystem::remove(work.statistics, ignored);
+    {
+      std::unique_lock lock(mutex_);
+      if (stopped_.wait_for(lock, pause, [this] { return stopping_; })) {
+        running.requeue = true;
+        return fail(ErrorCode::kCancelled, "the server stops");
+      }
+    }
+    SYMCELL_TRY(running.context.check());
+  }
+  if (!publish(job)) {
     running.requeue = true;
     return fail(ErrorCode::kCancelled, "the server stops");
   }
@@ -288,15 +422,35 @@ void JobRunner::keep_fault(const Job& job, const Error& error) {
                        {"kept", kept ? kept->native() : std::string("not kept")}});
 }
 
+void JobRunner::count_phases(const Job& job) {
+  try {
+    const auto document = nlohmann::json::parse(
+        MappedFile(parts_.files.statistics(job), Links::kRefuse).bytes(), nullptr, false);
+    if (!document.is_object()) return;
+    if (document.contains("timings_ms")) {
+      for (const auto& [phase, ms] : document["timings_ms"].items()) {
+        if (!ms.is_number()) continue;
+        parts_.metrics.observe("symcell_phase_duration_seconds", ms.get<double>() / 1000,
+                               {{"phase", phase}});
+      }
+    }
+    if (document.contains("cell")) {
+      parts_.metrics.count("symcell_elements_total", {}, document["cell"].value("elements", 0.0));
+    }
+  } catch (const std::exception&) {
+    // Deleted meanwhile; the figures are of no job then.
+  }
+}
+
 void JobRunner::settle(const Job& job, Running& running, const Result<void>& result) {
   // By a clock that nobody sets.
   const std::int64_t took_ms = steady_ms() - running.started_steady_ms;
-  JobChange change{.time_ms = job.started_ms.value_or(0) + took_ms};
+  JobChange change{.time_ms = job.started_ms.value_or(0) + took_ms, .attempt = job.attempt};
   JobEvent event = JobEvent::kSucceed;
   if (result) {
     change.result_bytes =
-        file_bytes(parts_.files.cell(job.id)) + file_bytes(parts_.files.statistics(job.id));
-    change.statistics_sha256 = sha256_of_file(parts_.files.statistics(job.id));
+        file_bytes(parts_.files.cell(job)) + file_bytes(parts_.files.statistics(job));
+    change.statistics_sha256 = sha256_of_file(parts_.files.statistics(job));
   } else if (result.error().code == ErrorCode::kCancelled) {
     event = running.requeue ? JobEvent::kRequeue : JobEvent::kCancel;
   } else {
@@ -314,16 +468,19 @@ void JobRunner::settle(const Job& job, Running& running, const Result<void>& res
     parts_.logger.error("job_end_not_written", {{"job", job.id}});
     return;
   }
-  if (!settled) return;  // deleted while it ran
+  if (!settled) return;  // deleted while it ran, or started again by another server
   const double seconds = static_cast<double>(took_ms) / 1000;
   const std::string_view state = job_state_name(settled->state);
   parts_.logger.info(event == JobEvent::kRequeue ? "job_requeued" : "job_finished",
                      {{"job", job.id},
                       {"state", state},
                       {"seconds", seconds},
-                      {"error", std::string_view(change.error_code)}});
+                      {"error", std::string_view(change.error_code)},
+                      {"request_id", std::string_view(job.request_id)},
+                      {"trace", trace_id_of(job.traceparent)}});
   if (event == JobEvent::kRequeue) return;
   parts_.metrics.observe("symcell_job_duration_seconds", seconds, {{"state", state}});
+  if (event == JobEvent::kSucceed) count_phases(job);
   if (!change.error_code.empty()) {
     parts_.metrics.count("symcell_job_errors_total", {{"code", change.error_code}});
   }

@@ -1,26 +1,29 @@
-// The queue of jobs and the threads that run them.
+// The threads that run jobs. The queue is the store's: a thread that is free asks it whose turn is.
 //
-// Guarantees: at most `workers` jobs run at once, in order of acceptance; a job that runs has its
-// row in state running; when a worker lets go of a job its row is finished or queued again,
-// whatever the engine did, exceptions included. While the store or the disk fails, the worker tries
-// again until it works or the server stops: no job is left behind by a failure that passes.
+// Guarantees: at most `workers` jobs run at once; a job that runs has its row in state running; when
+// a worker lets go of a job its row is finished or queued again, whatever the engine did, exceptions
+// included. While the store or the disk fails, the worker tries again until it works or the server
+// stops: no job is left behind by a failure that passes.
 #pragma once
 
 #include <atomic>
-#include <boost/asio/thread_pool.hpp>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <thread>
+#include <vector>
 
 #include "core/base/execution_context.hpp"
+#include "core/model/mesh_options.hpp"
+#include "server/base/clock.hpp"
 #include "server/base/fault_archive.hpp"
 #include "server/base/log.hpp"
 #include "server/base/metrics.hpp"
@@ -44,29 +47,27 @@ struct RunnerParts {
 
 class JobRunner {
  public:
-  JobRunner(RunnerParts parts, std::size_t workers, std::size_t queue_limit);
-  // Requires: stop() returned true.
+  JobRunner(RunnerParts parts, std::size_t workers);
+  // What it counts; before it is made.
+  static void declare_metrics(Metrics& metrics);
+  // Stops, and waits for whatever made stop() return false.
   ~JobRunner();
 
-  // A place in the queue for a job about to be stored; false if the queue is full or stopping.
-  [[nodiscard]] bool try_reserve();
-  void release_reservation();
-  // Uses up one reservation.
-  void enqueue_reserved(std::string id);
-  // For jobs that were accepted before, which are never refused.
-  void enqueue_recovered(std::string id);
+  // Starts the threads.
+  void start();
+  // A job came, or one that had to wait may run now.
+  void poke();
 
   enum class CancelResult : std::uint8_t {
-    kDequeued,  // was waiting: the caller updates the store
-    kStopping,  // runs: its worker updates the store within a second
-    kNotHere,   // neither waits nor runs
+    kStopping,  // runs here: its worker updates the store within a second
+    kNotHere,
   };
   CancelResult cancel(std::string_view id);
 
   [[nodiscard]] std::optional<Progress> progress(std::string_view id) const;
-  [[nodiscard]] std::size_t queued() const;
   [[nodiscard]] std::size_t running() const;
-  [[nodiscard]] std::size_t queue_limit() const { return queue_limit_; }
+  // Jobs that run for longer than their time limit and what a kill may take.
+  [[nodiscard]] std::size_t overdue() const;
   [[nodiscard]] std::size_t workers() const { return workers_; }
 
   // Starts no more jobs, gives those that run `grace`, then cancels and requeues them.
@@ -76,38 +77,51 @@ class JobRunner {
  private:
   struct Running {
     ExecutionContext context;
-    std::int64_t started_steady_ms = 0;  // of the worker's thread
-    std::atomic<bool> requeue{false};    // cancelled because the server stops, not by the user
+    std::int32_t attempt = 0;
+    std::int64_t started_steady_ms = steady_ms();
+    std::atomic<double> limit_s{kInfinity};
+    std::atomic<bool> requeue{false};  // cancelled because the server stops, not by the user
   };
 
-  void post();
-  void run_next();
+  void work();
+  // Sleeps until there may be something to run, or the server stops: then false.
+  [[nodiscard]] bool wait_for_work(std::uint64_t seen);
+  [[nodiscard]] std::optional<Job> claim();
+  // Makes a claimed job cancellable.
+  std::shared_ptr<Running> enter(const Job& job);
+  void run(const Job& job);
   void remove_files_if_deleted(const std::string& id);
-  void execute(const std::string& id, Running& running);
+  void execute(const Job& job, Running& running);
   // Does `work` again, with longer and longer pauses, while it throws StoreError or what a disk that
   // is full or gone throws. False: the server stops.
   [[nodiscard]] bool persist(const std::string& id, const std::function<void()>& work);
   void count_lost_worker(const std::string& id);
   // Moves the results to their names.
-  [[nodiscard]] bool publish(const std::string& id);
+  [[nodiscard]] bool publish(const Job& job);
   [[nodiscard]] Result<void> run_engine(const Job& job, Running& running);
+  void count_phases(const Job& job);
+  // Of a shared store: tells it which runs are alive, and hears which of them are to end.
+  void keep_runs();
+  void keep_runs_once();
   void keep_fault(const Job& job, const Error& error);
   void settle(const Job& job, Running& running, const Result<void>& result);
 
   RunnerParts parts_;
   const std::size_t workers_;
-  const std::size_t queue_limit_;
 
-  // Guards waiting_, running_, reserved_ and stopping_.
-  mutable std::mutex mutex_;
+  mutable std::mutex mutex_;         // guards all below but threads_
   std::condition_variable idle_;     // running_ became empty
   std::condition_variable stopped_;  // stopping_ became true
-  std::deque<std::string> waiting_;
+  std::condition_variable wanted_;   // pokes_ or stopping_ changed
   std::map<std::string, std::shared_ptr<Running>, std::less<>> running_;
-  std::size_t reserved_ = 0;
+  std::uint64_t pokes_ = 0;
+  std::size_t claiming_ = 0;
+  // Jobs to be cancelled that do not run here; one of them may just be claimed.
+  std::set<std::string, std::less<>> cancelled_meanwhile_;
   bool stopping_ = false;
 
-  boost::asio::thread_pool pool_;
+  std::vector<std::thread> threads_;
+  std::thread keeper_;
 };
 
 }  // namespace symcell::server

@@ -10,9 +10,13 @@
 #include "server/base/clock.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identifiers.hpp"
+#include "server/jobs/postgres_job_store.hpp"
 #include "server/jobs/sqlite_job_store.hpp"
 #include "server/jobs/staged_model.hpp"
+#include "server/jobs/stored_files.hpp"
 #include "server/jobs/watched_job_store.hpp"
+#include "server/keys/postgres_key_store.hpp"
+#include "server/keys/sqlite_key_store.hpp"
 
 namespace symcell::server {
 namespace {
@@ -58,14 +62,22 @@ JobService::JobService(const std::filesystem::path& data_directory,
       engine_(engine),
       metrics_(metrics),
       logger_(logger),
-      directory_(data_directory, logger),
-      files_(directory_.path()) {
-  directory_.empty_incoming();
-  store_ = std::make_unique<WatchedJobStore>(
-      std::make_unique<SqliteJobStore>(files_.database(), directory_.id()), metrics_, logger_);
+      directory_(data_directory, logger, !limits.store_url.empty()),
+      files_(directory_.path(), !limits.store_url.empty()) {
+  JobRunner::declare_metrics(metrics_);
+  std::unique_ptr<JobStore> store;
+  if (limits_.store_url.empty()) {
+    directory_.empty_incoming();
+    store = std::make_unique<SqliteJobStore>(files_.database(), directory_.id());
+    key_store_ = std::make_unique<SqliteKeyStore>(files_.database(), true);
+  } else {
+    store = std::make_unique<PostgresJobStore>(limits_.store_url, directory_.id());
+    key_store_ = std::make_unique<PostgresKeyStore>(limits_.store_url);
+  }
+  store_ = std::make_unique<WatchedJobStore>(std::move(store), metrics_, logger_);
+  key_ring_ = std::make_unique<KeyRing>(*key_store_, logger_);
   runner_ = std::make_unique<JobRunner>(
-      RunnerParts{engine_, *store_, files_, faults_, changes_, metrics_, logger_}, limits_.workers,
-      limits_.queue_limit);
+      RunnerParts{engine_, *store_, files_, faults_, changes_, metrics_, logger_}, limits_.workers);
 }
 
 JobService::~JobService() {
@@ -77,6 +89,13 @@ JobService::~JobService() {
 }
 
 void JobService::start() {
+  // What others are about to store, or run, would look like what a dead server left.
+  if (!store_->shared()) take_up_what_was_left();
+  runner_->start();
+  retention_ = std::make_unique<RetentionKeeper>(limits_.retention, *store_, files_, logger_);
+}
+
+void JobService::take_up_what_was_left() {
   using Fate = DataDirectory::Fate;
   directory_.sweep_jobs(
       [this](const std::string& id) {
@@ -91,7 +110,6 @@ void JobService::start() {
       [this](const std::string& id) { files_.remove(id); });
   store_->tidy(std::numeric_limits<std::int64_t>::max());
   for (const Job& job : store_->unfinished()) recover(job);
-  retention_ = std::make_unique<RetentionKeeper>(limits_.retention, *store_, files_, logger_);
 }
 
 void JobService::recover(const Job& job) {
@@ -105,7 +123,6 @@ void JobService::recover(const Job& job) {
     store_->apply(job.id, JobEvent::kRequeue, {.time_ms = now_ms()});
   }
   logger_.info("job_recovered", {{"job", job.id}});
-  runner_->enqueue_recovered(job.id);
 }
 
 void JobService::begin_stop() {
@@ -124,17 +141,40 @@ MeshOptions JobService::capped(MeshOptions options) const {
   return options;
 }
 
-bool JobService::queue_is_full() const {
-  return runner_->queued() >= limits_.queue_limit;
+// A queue of ten places or more keeps a tenth that no client takes alone, so that others find room.
+Admission JobService::admission(const KeyLimits& limits) const {
+  constexpr std::size_t kShareForOthers = 10;
+  const std::size_t limit = limits_.queue_limit;
+  Admission most;
+  most.queued = static_cast<std::int64_t>(limit);
+  most.queued_of_client = static_cast<std::int64_t>(limit - limit / kShareForOthers);
+  if (limits.queued > 0) most.queued_of_client = std::min(most.queued_of_client, limits.queued);
+  if (limits.bytes_per_day > 0) most.bytes_per_day = limits.bytes_per_day;
+  return most;
+}
+
+ClientUsage JobService::usage(std::string_view client) {
+  return store_->usage(client, now_ms());
+}
+
+bool JobService::queue_is_full(const std::string& client, const KeyLimits& limits) {
+  const Admission most = admission(limits);
+  const StoreTotals totals = store_->totals();
+  return totals.by_state[static_cast<std::size_t>(JobState::kQueued)] >= most.queued ||
+         usage(client).queued >= most.queued_of_client;
 }
 
 SubmitOutcome JobService::submit(const Submission& submission) {
-  const std::string options_json =
-      options_to_json(capped(submission.options), model_format_info(submission.model_format).kind)
-          .dump();
+  return submit_options(submission, options_to_json(capped(submission.options),
+                                                    model_format_info(submission.model_format).kind)
+                                        .dump());
+}
+
+SubmitOutcome JobService::submit_options(const Submission& submission,
+                                         const std::string& options_json) {
   std::optional<IdempotencyKey> key;
   if (!submission.idempotency_key.empty()) {
-    key = {submission.idempotency_key, digest_of(submission, options_json)};
+    key = {submission.idempotency_key, digest_of(submission, options_json), submission.owner};
     // Before the queue is asked: a repeated request gets its job however full the queue is.
     if (auto known = store_->find_key(*key)) {
       const bool same = known->result == InsertResult::kReplayed;
@@ -142,38 +182,54 @@ SubmitOutcome JobService::submit(const Submission& submission) {
     }
   }
   if (stopping_) return {SubmitStatus::kStopping, {}};
-  if (!runner_->try_reserve()) {
-    return {stopping_ ? SubmitStatus::kStopping : SubmitStatus::kQueueFull, {}};
+  SubmitOutcome outcome = store_job(submission, key, options_json);
+  if (outcome.status == SubmitStatus::kAccepted) {
+    runner_->poke();
+    if (retention_) retention_->poke();
   }
+  return outcome;
+}
+
+// Hard-linked rather than copied: models are never written to again.
+SubmitOutcome JobService::rerun(const Job& job, Submission submission) {
+  check_model(job, files_);
+  submission.model = files_.incoming();
+  std::filesystem::create_hard_link(files_.model(job.id), submission.model);
+  submission.model_format = job.model_format;
+  submission.model_name = job.model_name;
   try {
-    SubmitOutcome outcome = store_reserved(submission, key, options_json);
-    if (outcome.status == SubmitStatus::kAccepted) {
-      runner_->enqueue_reserved(outcome.job.id);
-      if (retention_) retention_->poke();
-    } else {
-      runner_->release_reservation();
-    }
+    SubmitOutcome outcome = submit_options(submission, job.options_json);
+    std::error_code ignored;
+    std::filesystem::remove(submission.model, ignored);
     return outcome;
   } catch (...) {
-    runner_->release_reservation();
+    std::error_code ignored;
+    std::filesystem::remove(submission.model, ignored);
     throw;
   }
 }
 
-SubmitOutcome JobService::store_reserved(const Submission& submission,
-                                         const std::optional<IdempotencyKey>& key,
-                                         const std::string& options_json) {
+SubmitOutcome JobService::store_job(const Submission& submission,
+                                    const std::optional<IdempotencyKey>& key,
+                                    const std::string& options_json) {
   Job job;
   job.created_ms = now_ms();
   job.id = make_job_id(job.created_ms);
   job.model_format = submission.model_format;
   job.model_name = submission.model_name;
   job.options_json = options_json;
+  job.client = submission.client;
+  job.owner = submission.owner;
+  job.most_running = submission.limits.running;
+  job.weight = submission.priority;
+  job.request_id = submission.request_id;
+  job.traceparent = submission.traceparent;
+  job.webhook = submission.webhook;
   job.model_bytes = static_cast<std::int64_t>(std::filesystem::file_size(submission.model));
   job.model_sha256 = sha256_of_file(submission.model);
   try {
     files_.adopt_model(submission.model, job.id);
-    InsertOutcome inserted = store_->insert(job, key);
+    InsertOutcome inserted = store_->insert(job, key, admission(submission.limits));
     if (inserted.result == InsertResult::kInserted) {
       settle_or_erase(*store_, files_, job.id);
     } else {
@@ -183,6 +239,8 @@ SubmitOutcome JobService::store_reserved(const Submission& submission,
       case InsertResult::kInserted: return {SubmitStatus::kAccepted, std::move(inserted.job)};
       case InsertResult::kReplayed: return {SubmitStatus::kReplayed, std::move(inserted.job)};
       case InsertResult::kConflict: return {SubmitStatus::kKeyConflict, {}};
+      case InsertResult::kQueueFull: return {SubmitStatus::kQueueFull, {}};
+      case InsertResult::kBytesSpent: return {SubmitStatus::kBytesSpent, {}};
     }
   } catch (...) {
     discard_staged(files_, job.id);
@@ -207,33 +265,59 @@ std::optional<Job> JobService::wait_finished(std::string_view id,
   }
 }
 
-std::optional<Progress> JobService::progress(std::string_view id) const {
-  return runner_->progress(id);
+std::optional<Progress> JobService::progress(const Job& job) const {
+  if (auto own = runner_->progress(job.id)) return own;
+  return job.state == JobState::kRunning ? job.progress : std::nullopt;
+}
+
+std::uint64_t JobService::free_bytes() const {
+  std::error_code error;
+  const auto space = std::filesystem::space(files_.incoming().parent_path(), error);
+  return error ? 0 : space.available;
+}
+
+std::string JobService::fault() const {
+  // Less than the largest body that may come, by default.
+  constexpr std::uint64_t kLeastFreeBytes = std::uint64_t{64} << 20U;
+  if (const std::uint64_t free = free_bytes(); free < kLeastFreeBytes) {
+    return "there are " + std::to_string(free >> 20U) + " MiB left on the disk";
+  }
+  if (const std::size_t overdue = runner_->overdue(); overdue > 0) {
+    return std::to_string(overdue) + " jobs run beyond their time limit and do not end";
+  }
+  return {};
+}
+
+double JobService::queue_age_s() {
+  const auto oldest = store_->oldest_waiting_ms();
+  return oldest ? static_cast<double>(std::max<std::int64_t>(0, now_ms() - *oldest)) / 1000 : 0;
 }
 
 std::optional<Job> JobService::cancel(std::string_view id) {
   auto job = find(id);
   if (!job || is_finished(job->state)) return job;
-  if (runner_->cancel(id) == JobRunner::CancelResult::kDequeued) {
-    try {
-      store_->apply(id, JobEvent::kCancel, {.time_ms = now_ms()});
-    } catch (...) {
-      // Not cancelled, then: it must not be left queued with nobody to run it.
-      runner_->enqueue_recovered(std::string(id));
-      throw;
-    }
+  if (job->state == JobState::kQueued &&
+      store_->apply(id, JobEvent::kCancel, {.time_ms = now_ms(), .attempt = job->attempt})) {
     logger_.info("job_cancelled_in_queue", {{"job", id}});
     changes_.notify();
+    return find(id);
+  }
+  // It runs, or was started just now.
+  if (runner_->cancel(id) == JobRunner::CancelResult::kNotHere && store_->shared()) {
+    store_->request_cancel(id);
   }
   return find(id);
 }
 
 bool JobService::erase(std::string_view id) {
   if (!is_job_id(id)) return false;
+  const auto job = store_->find(id);
   if (!store_->erase(id)) return false;
   runner_->cancel(id);
+  // Where another server runs it, that one removes the files.
+  const bool elsewhere = store_->shared() && job && job->state == JobState::kRunning;
   // A worker that still holds the job removes the files when it lets go and finds the row gone.
-  if (!runner_->progress(id)) files_.remove(id);
+  if (!elsewhere && !runner_->progress(id)) files_.remove(id);
   faults_.remove(id);
   logger_.info("job_deleted", {{"job", id}});
   changes_.notify();

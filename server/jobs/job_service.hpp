@@ -23,6 +23,7 @@
 #include "server/jobs/job_runner.hpp"
 #include "server/jobs/job_store.hpp"
 #include "server/jobs/retention.hpp"
+#include "server/keys/key_ring.hpp"
 
 namespace symcell::server {
 
@@ -32,6 +33,9 @@ struct JobLimits {
   double time_limit_s = kInfinity;  // caps of the server on every job
   std::uint64_t max_elements = 50'000'000;
   RetentionRules retention;
+  // postgres://...: servers that share their jobs, and their data directory for models and results;
+  // empty: a database of this server's alone, in its data directory.
+  std::string store_url = {};
 };
 
 struct Submission {
@@ -40,6 +44,13 @@ struct Submission {
   std::string model_name;
   MeshOptions options;
   std::string idempotency_key;  // empty: none
+  std::string client = {};      // whose it is: clients take turns
+  std::string owner = {};       // the id of the client's key, if it has one
+  KeyLimits limits = {};        // of that key
+  std::int32_t priority = 1;
+  std::string request_id = {};
+  std::string traceparent = {};
+  std::string webhook = {};
 };
 
 enum class SubmitStatus : std::uint8_t {
@@ -47,6 +58,7 @@ enum class SubmitStatus : std::uint8_t {
   kReplayed,
   kKeyConflict,
   kQueueFull,
+  kBytesSpent,
   kStopping
 };
 
@@ -75,15 +87,17 @@ class JobService {
   [[nodiscard]] bool finish_stop(std::chrono::milliseconds grace);
 
   [[nodiscard]] SubmitOutcome submit(const Submission& submission);
-  // True if a submission without a known key would be refused now.
-  [[nodiscard]] bool queue_is_full() const;
+  // The same model and options again, of which `submission` has all but these two.
+  [[nodiscard]] SubmitOutcome rerun(const Job& job, Submission submission);
+  // True if a submission of this client without a known key would be refused now.
+  [[nodiscard]] bool queue_is_full(const std::string& client = {}, const KeyLimits& limits = {});
 
   [[nodiscard]] std::optional<Job> find(std::string_view id);
   [[nodiscard]] std::vector<Job> list(const JobFilter& filter) { return store_->list(filter); }
   // The job once it is finished, or as it is at the deadline or when the server stops.
   [[nodiscard]] std::optional<Job> wait_finished(std::string_view id,
                                                  ChangeSignal::Clock::time_point deadline);
-  [[nodiscard]] std::optional<Progress> progress(std::string_view id) const;
+  [[nodiscard]] std::optional<Progress> progress(const Job& job) const;
 
   // nullopt: unknown. A finished job stays as it is; a running one is cancelled within a second.
   std::optional<Job> cancel(std::string_view id);
@@ -95,16 +109,30 @@ class JobService {
   [[nodiscard]] JobEngine& engine() { return engine_; }
   [[nodiscard]] const JobLimits& limits() const { return limits_; }
   [[nodiscard]] const JobRunner& runner() const { return *runner_; }
+  [[nodiscard]] KeyRing& keys() { return *key_ring_; }
+  [[nodiscard]] ClientUsage usage(std::string_view client);
   [[nodiscard]] StoreTotals totals() { return store_->totals(); }
   void check_health() { store_->check_health(); }
+  // What else than the store keeps it from running jobs well: no room on the disk, a run that does
+  // not end. Empty: nothing.
+  [[nodiscard]] std::string fault() const;
+  // Seconds that the job waits which waits longest.
+  [[nodiscard]] double queue_age_s();
+  [[nodiscard]] JobStore& store() { return *store_; }
+  // Room for files, in bytes.
+  [[nodiscard]] std::uint64_t free_bytes() const;
   // The server's caps applied to what a request asks for.
   [[nodiscard]] MeshOptions capped(MeshOptions options) const;
 
  private:
+  void take_up_what_was_left();
   void recover(const Job& job);
-  [[nodiscard]] SubmitOutcome store_reserved(const Submission& submission,
-                                             const std::optional<IdempotencyKey>& key,
+  [[nodiscard]] Admission admission(const KeyLimits& limits) const;
+  [[nodiscard]] SubmitOutcome submit_options(const Submission& submission,
                                              const std::string& options_json);
+  [[nodiscard]] SubmitOutcome store_job(const Submission& submission,
+                                        const std::optional<IdempotencyKey>& key,
+                                        const std::string& options_json);
 
   JobLimits limits_;
   JobEngine& engine_;
@@ -115,6 +143,8 @@ class JobService {
   FaultArchive faults_{files_.faults()};
   ChangeSignal changes_;
   std::unique_ptr<JobStore> store_;
+  std::unique_ptr<KeyStore> key_store_;
+  std::unique_ptr<KeyRing> key_ring_;
   std::unique_ptr<JobRunner> runner_;
   std::unique_ptr<RetentionKeeper> retention_;
   std::atomic<bool> stopping_{false};

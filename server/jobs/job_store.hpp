@@ -5,7 +5,10 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -28,16 +31,38 @@ class StoreError : public std::runtime_error {
   Kind kind_;
 };
 
+// How long a run of a shared store is taken to be alive without a sign.
+inline constexpr std::chrono::seconds kLease{15};
+
 // A caller's promise that requests with the same key are the same request.
 struct IdempotencyKey {
   std::string key;
-  std::string digest;  // of the request
+  std::string digest;      // of the request
+  std::string owner = {};  // two clients may have the same key
 };
 
 enum class InsertResult : std::uint8_t {
   kInserted,
-  kReplayed,  // the key is known with this digest: the job in the outcome is the earlier one
-  kConflict,  // the key is known with another digest
+  kReplayed,    // the key is known with this digest: the job in the outcome is the earlier one
+  kConflict,    // the key is known with another digest
+  kQueueFull,   // in all, or with jobs of this client
+  kBytesSpent,  // the owner has sent as many bytes today as he may
+};
+
+// What a job must find to be taken: places in the queue, and for its client.
+struct Admission {
+  std::int64_t queued = std::numeric_limits<std::int64_t>::max();
+  std::int64_t queued_of_client = std::numeric_limits<std::int64_t>::max();
+  std::int64_t bytes_per_day =
+      std::numeric_limits<std::int64_t>::max();  // of the owner, if it has one
+};
+
+// What a client has at present.
+struct ClientUsage {
+  std::int64_t queued = 0;
+  std::int64_t running = 0;
+  std::int64_t bytes_today = 0;  // of models that owners sent, from midnight, UTC
+  std::int64_t jobs_today = 0;
 };
 
 struct InsertOutcome {
@@ -47,6 +72,7 @@ struct InsertOutcome {
 
 struct JobFilter {
   std::optional<JobState> state;
+  std::optional<std::string> owner;
   std::size_t limit = 50;
   std::optional<std::int64_t> before_sequence;  // only jobs accepted earlier
 };
@@ -56,6 +82,9 @@ struct JobChange {
   // By the machine's clock. Where that was set back, a job starts no earlier than it came and ends
   // no earlier than it started.
   std::int64_t time_ms = 0;
+  // Of the run that writes. Where the job was started again since, nothing is written: a run that was
+  // given up may still go on somewhere.
+  std::optional<std::int32_t> attempt = {};
   std::string error_code = {};
   std::string error_json = {};
   std::int64_t result_bytes = 0;
@@ -67,12 +96,33 @@ struct StoreTotals {
   std::int64_t bytes = 0;                  // models and results
 };
 
+// A run as the server that has it tells of it, and what it is told.
+struct RunState {
+  std::string id;
+  std::int32_t attempt = 0;
+  Progress progress;
+};
+struct RunOrder {
+  std::string id;
+  bool lost = false;    // deleted, or started again elsewhere: the run is of no use any more
+  bool cancel = false;  // somebody asked for its end
+};
+
+// A message about a finished job, on its way to whoever asked to be told.
+struct Delivery {
+  std::string job_id;
+  std::string address;
+  std::int32_t tries = 0;  // so far
+};
+
 class JobStore {
  public:
   virtual ~JobStore() = default;
 
-  // `job.sequence` is given by the store.
-  virtual InsertOutcome insert(const Job& job, const std::optional<IdempotencyKey>& key) = 0;
+  // `job.sequence` is given by the store, and so is its turn among those that wait.
+  virtual InsertOutcome insert(const Job& job,
+                               const std::optional<IdempotencyKey>& key,
+                               const Admission& admission) = 0;
   // kReplayed or kConflict; nullopt if the key is unknown.
   [[nodiscard]] virtual std::optional<InsertOutcome> find_key(const IdempotencyKey& key) = 0;
   [[nodiscard]] virtual std::optional<Job> find(std::string_view id) = 0;
@@ -80,9 +130,41 @@ class JobStore {
   [[nodiscard]] virtual std::vector<Job> list(const JobFilter& filter) = 0;
   // Oldest first.
   [[nodiscard]] virtual std::vector<Job> unfinished() = 0;
+  // When the job came that waits longest, by the clock of created_ms; nullopt: none waits.
+  [[nodiscard]] virtual std::optional<std::int64_t> oldest_waiting_ms() = 0;
+  // Jobs without a result that ended before this time of clock_ms() and still have their models.
+  [[nodiscard]] virtual std::vector<Job> spent_models(std::int64_t before_clock_ms,
+                                                      std::size_t limit) = 0;
+  // The model was removed, or is about to be.
+  virtual void forget_model(std::string_view id) = 0;
+  // A message that is due at this time of clock_ms(), and is due again only after `patience`: for a
+  // server that dies over it. nullopt: none.
+  virtual std::optional<Delivery> claim_delivery(std::chrono::milliseconds patience) = 0;
+  // It arrived, or will be tried again after `pause`, or nullopt: is given up.
+  virtual void delivered(std::string_view job_id) = 0;
+  virtual void delivery_failed(std::string_view job_id,
+                               std::optional<std::chrono::milliseconds> pause) = 0;
   // Finished jobs, oldest first.
   [[nodiscard]] virtual std::vector<Job> oldest_finished(std::size_t limit) = 0;
-  // The job after the event; nullopt if it is gone or the event is not allowed in its state.
+  [[nodiscard]] virtual ClientUsage usage(std::string_view client, std::int64_t time_ms) = 0;
+  // Starts the job whose turn it is, of those whose client may run one more: clients take turns, as many jobs each as their weight, and each
+  // one's jobs go in the order they came. nullopt: none waits that may run.
+  virtual std::optional<Job> claim(std::int64_t time_ms) = 0;
+  // Whether other servers have the same jobs. Then a run must be renewed by keep() more often than
+  // every kLease, or it is taken to be dead and given to another by rescue().
+  [[nodiscard]] virtual bool shared() const { return false; }
+  [[nodiscard]] virtual std::vector<RunOrder> keep(const std::vector<RunState>& runs) {
+    static_cast<void>(runs);
+    return {};
+  }
+  // Queues runs again that nobody keeps. Returns how many.
+  virtual std::size_t rescue() { return 0; }
+  // Asks whoever runs the job to end it.
+  virtual void request_cancel(std::string_view id) { static_cast<void>(id); }
+  // `changed`: called, from a thread of the store's, when another server has changed a job.
+  virtual void listen(std::function<void()> changed) { static_cast<void>(changed); }
+  // The job after the event; nullopt if it is gone or the event is not allowed in its state,
+  // or `change.attempt` is not its attempt.
   virtual std::optional<Job> apply(std::string_view id,
                                    JobEvent event,
                                    const JobChange& change) = 0;

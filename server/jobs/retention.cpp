@@ -53,6 +53,20 @@ std::size_t apply_retention(const RetentionRules& rules, JobStore& store, const 
   }
 }
 
+std::size_t remove_spent_models(const RetentionRules& rules,
+                                JobStore& store,
+                                const JobFiles& files) {
+  if (rules.spent_model_age_s == 0) return 0;
+  const std::int64_t before = store.clock_ms() - rules.spent_model_age_s * 1000;
+  const auto spent = store.spent_models(before, kBatch);
+  for (const Job& job : spent) {
+    // The row first: a row without its model would be an error.
+    store.forget_model(job.id);
+    files.remove_model(job.id);
+  }
+  return spent.size();
+}
+
 RetentionKeeper::RetentionKeeper(RetentionRules rules,
                                  JobStore& store,
                                  const JobFiles& files,
@@ -84,6 +98,7 @@ void RetentionKeeper::work(const std::stop_token& stop) {
     if (stop.stop_requested()) return;
     try {
       const std::size_t removed = apply_retention(rules_, store_, files_);
+      remove_spent_models(rules_, store_, files_);
       // Those of the sweep before: a worker lets go of its files within a second.
       if (const std::int64_t now = steady_ms(); now >= tidy_at_ms_) {
         tidy_at_ms_ = now + std::chrono::milliseconds(kInterval).count();

@@ -18,11 +18,18 @@ struct RetentionRules {
   std::int64_t max_age_s = 0;  // since the job finished
   std::int64_t max_jobs = 0;   // finished ones
   std::int64_t max_bytes = 0;  // of all jobs together; finished ones go, oldest first
+  // Of models whose jobs have no result, failed or cancelled; the jobs stay.
+  std::int64_t spent_model_age_s = 0;
 };
 
 // Removes what the rules forbid, ages by the store's clock; returns how many jobs went. What is too
 // old goes bit by bit, with one call after the other.
 std::size_t apply_retention(const RetentionRules& rules, JobStore& store, const JobFiles& files);
+
+// Removes models whose jobs have no result and are old enough; returns how many.
+std::size_t remove_spent_models(const RetentionRules& rules,
+                                JobStore& store,
+                                const JobFiles& files);
 
 // Applies the rules at start, every minute, and soon after poke().
 class RetentionKeeper {

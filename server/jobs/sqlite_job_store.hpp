@@ -1,7 +1,6 @@
 // Jobs in an embedded SQLite database: write-ahead log, synchronised at every commit.
 //
-// The schema carries a version (PRAGMA user_version); opening migrates older ones step by step and
-// refuses newer ones.
+// Opening migrates older schemas and refuses newer ones (server/jobs/sqlite_schema.hpp).
 #pragma once
 
 #include <cstdint>
@@ -14,24 +13,6 @@
 #include "server/jobs/job_store.hpp"
 
 namespace symcell::server {
-
-enum class DatabaseState : std::uint8_t {
-  kMissing,
-  kEmpty,    // nothing in it, as a database that was truncated or never written
-  kOurs,     // of any version
-  kForeign,  // sound, and with tables, but without jobs
-  kDamaged,
-};
-
-struct DatabaseFinding {
-  DatabaseState state = DatabaseState::kMissing;
-  std::string directory_id;  // of kOurs; empty: written by a version that gave none
-  std::string fault;         // of kDamaged
-};
-
-// Reads all of the file and changes nothing.  Throws std::runtime_error if it cannot be read (no
-// rights, a symbolic link, an error of the disk), which says nothing about its contents.
-[[nodiscard]] DatabaseFinding examine_job_database(const std::filesystem::path& file);
 
 // The machine's clocks, in milliseconds; tests have their own.
 struct MachineClocks {
@@ -49,12 +30,24 @@ class SqliteJobStore final : public JobStore {
                           MachineClocks clocks = {});
   ~SqliteJobStore() override;
 
-  InsertOutcome insert(const Job& job, const std::optional<IdempotencyKey>& key) override;
+  InsertOutcome insert(const Job& job,
+                       const std::optional<IdempotencyKey>& key,
+                       const Admission& admission) override;
   [[nodiscard]] std::optional<InsertOutcome> find_key(const IdempotencyKey& key) override;
   [[nodiscard]] std::optional<Job> find(std::string_view id) override;
   [[nodiscard]] std::vector<Job> list(const JobFilter& filter) override;
   [[nodiscard]] std::vector<Job> unfinished() override;
   [[nodiscard]] std::vector<Job> oldest_finished(std::size_t limit) override;
+  [[nodiscard]] ClientUsage usage(std::string_view client, std::int64_t time_ms) override;
+  std::optional<Job> claim(std::int64_t time_ms) override;
+  [[nodiscard]] std::optional<std::int64_t> oldest_waiting_ms() override;
+  [[nodiscard]] std::vector<Job> spent_models(std::int64_t before_clock_ms,
+                                              std::size_t limit) override;
+  void forget_model(std::string_view id) override;
+  std::optional<Delivery> claim_delivery(std::chrono::milliseconds patience) override;
+  void delivered(std::string_view job_id) override;
+  void delivery_failed(std::string_view job_id,
+                       std::optional<std::chrono::milliseconds> pause) override;
   std::optional<Job> apply(std::string_view id, JobEvent event, const JobChange& change) override;
   void count_lost_worker(std::string_view id) override;
   bool erase(std::string_view id) override;

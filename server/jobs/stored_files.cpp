@@ -31,7 +31,7 @@ auto reading(const Job& job, std::string_view file, const Work& work) {
 
 std::string read_statistics(const Job& job, const JobFiles& files) {
   std::string text = reading(job, "statistics", [&] {
-    return std::string(MappedFile(files.statistics(job.id), Links::kRefuse).bytes());
+    return std::string(MappedFile(files.statistics(job), Links::kRefuse).bytes());
   });
   if (job.statistics_sha256.empty()) {
     if (!nlohmann::json::accept(text)) throw_damaged(job, "statistics", "are damaged");
@@ -45,7 +45,7 @@ std::string read_statistics(const Job& job, const JobFiles& files) {
 
 SymmetryCellMesh read_cell(const Job& job, const JobFiles& files) {
   return reading(job, "cell", [&] {
-    auto cell = read_cell_archive(MappedFile(files.cell(job.id), Links::kRefuse).bytes());
+    auto cell = read_cell_archive(MappedFile(files.cell(job), Links::kRefuse).bytes());
     if (!cell) throw_damaged(job, "cell", "is damaged: " + cell.error().message);
     return std::move(*cell);
   });
@@ -54,7 +54,7 @@ SymmetryCellMesh read_cell(const Job& job, const JobFiles& files) {
 std::int32_t read_cell_dimension(const Job& job, const JobFiles& files) {
   return reading(job, "cell", [&] {
     const auto dimension =
-        cell_archive_dimension(MappedFile(files.cell(job.id), Links::kRefuse).bytes());
+        cell_archive_dimension(MappedFile(files.cell(job), Links::kRefuse).bytes());
     if (!dimension) throw_damaged(job, "cell", "is damaged: " + dimension.error().message);
     return *dimension;
   });

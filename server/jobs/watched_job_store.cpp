@@ -58,8 +58,21 @@ auto WatchedJobStore::watched(std::string_view operation, bool writes, const Wor
   }
 }
 
-InsertOutcome WatchedJobStore::insert(const Job& job, const std::optional<IdempotencyKey>& key) {
-  return watched("insert", true, [&] { return store_->insert(job, key); });
+InsertOutcome WatchedJobStore::insert(const Job& job,
+                                      const std::optional<IdempotencyKey>& key,
+                                      const Admission& admission) {
+  return watched("insert", true, [&] { return store_->insert(job, key, admission); });
+}
+
+ClientUsage WatchedJobStore::usage(std::string_view client, std::int64_t time_ms) {
+  return watched("usage", false, [&] { return store_->usage(client, time_ms); });
+}
+
+std::optional<Job> WatchedJobStore::claim(std::int64_t time_ms) {
+  // Finding nothing to start writes nothing.
+  auto job = watched("claim", false, [&] { return store_->claim(time_ms); });
+  if (job) wrote();
+  return job;
 }
 
 std::optional<InsertOutcome> WatchedJobStore::find_key(const IdempotencyKey& key) {
@@ -80,6 +93,44 @@ std::vector<Job> WatchedJobStore::unfinished() {
 
 std::vector<Job> WatchedJobStore::oldest_finished(std::size_t limit) {
   return watched("oldest_finished", false, [&] { return store_->oldest_finished(limit); });
+}
+
+std::vector<RunOrder> WatchedJobStore::keep(const std::vector<RunState>& runs) {
+  return watched("keep", true, [&] { return store_->keep(runs); });
+}
+
+std::size_t WatchedJobStore::rescue() {
+  return watched("rescue", true, [&] { return store_->rescue(); });
+}
+
+void WatchedJobStore::request_cancel(std::string_view id) {
+  watched("request_cancel", true, [&] { store_->request_cancel(id); });
+}
+
+std::optional<std::int64_t> WatchedJobStore::oldest_waiting_ms() {
+  return watched("oldest_waiting", false, [&] { return store_->oldest_waiting_ms(); });
+}
+
+std::vector<Job> WatchedJobStore::spent_models(std::int64_t before_clock_ms, std::size_t limit) {
+  return watched("spent_models", false,
+                 [&] { return store_->spent_models(before_clock_ms, limit); });
+}
+
+void WatchedJobStore::forget_model(std::string_view id) {
+  watched("forget_model", true, [&] { store_->forget_model(id); });
+}
+
+std::optional<Delivery> WatchedJobStore::claim_delivery(std::chrono::milliseconds patience) {
+  return watched("claim_delivery", false, [&] { return store_->claim_delivery(patience); });
+}
+
+void WatchedJobStore::delivered(std::string_view job_id) {
+  watched("delivered", true, [&] { store_->delivered(job_id); });
+}
+
+void WatchedJobStore::delivery_failed(std::string_view job_id,
+                                      std::optional<std::chrono::milliseconds> pause) {
+  watched("delivery_failed", true, [&] { store_->delivery_failed(job_id, pause); });
 }
 
 std::optional<Job> WatchedJobStore::apply(std::string_view id,

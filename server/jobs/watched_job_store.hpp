@@ -17,12 +17,29 @@ class WatchedJobStore final : public JobStore {
   // Counts symcell_store_errors_total; declares it. Both must outlive the store.
   WatchedJobStore(std::unique_ptr<JobStore> store, Metrics& metrics, Logger& logger);
 
-  InsertOutcome insert(const Job& job, const std::optional<IdempotencyKey>& key) override;
+  InsertOutcome insert(const Job& job,
+                       const std::optional<IdempotencyKey>& key,
+                       const Admission& admission) override;
   [[nodiscard]] std::optional<InsertOutcome> find_key(const IdempotencyKey& key) override;
   [[nodiscard]] std::optional<Job> find(std::string_view id) override;
   [[nodiscard]] std::vector<Job> list(const JobFilter& filter) override;
   [[nodiscard]] std::vector<Job> unfinished() override;
   [[nodiscard]] std::vector<Job> oldest_finished(std::size_t limit) override;
+  [[nodiscard]] ClientUsage usage(std::string_view client, std::int64_t time_ms) override;
+  std::optional<Job> claim(std::int64_t time_ms) override;
+  [[nodiscard]] bool shared() const override { return store_->shared(); }
+  [[nodiscard]] std::vector<RunOrder> keep(const std::vector<RunState>& runs) override;
+  std::size_t rescue() override;
+  void request_cancel(std::string_view id) override;
+  void listen(std::function<void()> changed) override { store_->listen(std::move(changed)); }
+  [[nodiscard]] std::optional<std::int64_t> oldest_waiting_ms() override;
+  [[nodiscard]] std::vector<Job> spent_models(std::int64_t before_clock_ms,
+                                              std::size_t limit) override;
+  void forget_model(std::string_view id) override;
+  std::optional<Delivery> claim_delivery(std::chrono::milliseconds patience) override;
+  void delivered(std::string_view job_id) override;
+  void delivery_failed(std::string_view job_id,
+                       std::optional<std::chrono::milliseconds> pause) override;
   std::optional<Job> apply(std::string_view id, JobEvent event, const JobChange& change) override;
   void count_lost_worker(std::string_view id) override;
   bool erase(std::string_view id) override;

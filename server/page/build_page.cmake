@@ -46,7 +46,7 @@ function(build_bundle result)
 endfunction()
 
 function(media_type_of file result)
-  set(types .html "text/html; charset=utf-8" .js "text/javascript; charset=utf-8" .css "text/css; charset=utf-8"
+  set(types .html "text/html\; charset=utf-8" .js "text/javascript\; charset=utf-8" .css "text/css\; charset=utf-8"
             .svg image/svg+xml .json application/json .stl model/stl)
   get_filename_component(ending ${file} LAST_EXT)
   list(FIND types ${ending} at)

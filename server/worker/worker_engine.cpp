@@ -164,27 +164,26 @@ Result<void> WorkerEngine::draw(const std::filesystem::path& model,
   return {};
 }
 
-void WorkerEngine::append_metrics(std::string& text) const {
-  const PoolCounts counts = pool_.counts();
-  Metrics::append_gauge_header(text, "symcell_worker_processes", "Worker processes by state.");
-  Metrics::append_sample(text, "symcell_worker_processes", {{"state", "idle"}},
-                         static_cast<double>(counts.idle));
-  Metrics::append_sample(text, "symcell_worker_processes", {{"state", "busy"}},
-                         static_cast<double>(counts.busy));
-  Metrics::append_counter_header(text, "symcell_worker_starts_total", "Worker processes started.");
-  Metrics::append_sample(text, "symcell_worker_starts_total", {},
-                         static_cast<double>(counts.started));
-  Metrics::append_counter_header(
-      text, "symcell_worker_ends_total",
+void WorkerEngine::declare_metrics(Metrics& metrics) const {
+  metrics.declare_gauge("symcell_worker_processes", "Worker processes by state.");
+  metrics.declare_counter("symcell_worker_starts_total", "Worker processes started.");
+  metrics.declare_counter(
+      "symcell_worker_ends_total",
       "Worker processes that ended, by reason: retired after their share of requests, killed by "
-      "the "
-      "server (cancelled, time_limit), memory_limit, crash, or killed from outside.");
-  Metrics::append_sample(text, "symcell_worker_ends_total", {{"reason", "retired"}},
-                         static_cast<double>(counts.retired));
+      "the server (cancelled, time_limit), memory_limit, crash, or killed from outside.");
+}
+
+void WorkerEngine::report_metrics(Metrics& metrics) const {
+  const PoolCounts counts = pool_.counts();
+  metrics.set("symcell_worker_processes", {{"state", "idle"}}, static_cast<double>(counts.idle));
+  metrics.set("symcell_worker_processes", {{"state", "busy"}}, static_cast<double>(counts.busy));
+  metrics.count_up_to("symcell_worker_starts_total", {}, static_cast<double>(counts.started));
+  metrics.count_up_to("symcell_worker_ends_total", {{"reason", "retired"}},
+                      static_cast<double>(counts.retired));
   for (std::size_t kind = 0; kind < ends_.size(); ++kind) {
-    Metrics::append_sample(text, "symcell_worker_ends_total",
-                           {{"reason", end_kind_name(static_cast<EndKind>(kind))}},
-                           static_cast<double>(ends_[kind].load()));
+    metrics.count_up_to("symcell_worker_ends_total",
+                        {{"reason", end_kind_name(static_cast<EndKind>(kind))}},
+                        static_cast<double>(ends_[kind].load()));
   }
 }
 

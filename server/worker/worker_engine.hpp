@@ -39,7 +39,8 @@ class WorkerEngine final : public JobEngine {
                                   const std::filesystem::path& picture,
                                   ExecutionContext& context) override;
   [[nodiscard]] std::string fault() const override { return pool_.fault(); }
-  void append_metrics(std::string& text) const override;
+  void declare_metrics(Metrics& metrics) const override;
+  void report_metrics(Metrics& metrics) const override;
 
  private:
   [[nodiscard]] TaskOutcome run_once(const RequestMessage& request, ExecutionContext& context);

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <condition_variable>
 #include <cstdio>
 #include <exception>
@@ -13,6 +14,7 @@
 #include <mutex>
 #include <new>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -75,6 +77,12 @@ WorkerMessage perform(Work& work) {
                           "not enough memory for this model; relax the size bounds",
                           {},
                           {}}};
+  } catch (const std::system_error& error) {
+    const int code = error.code().value();
+    const bool disk = error.code().category() == std::generic_category() &&
+                      (code == ENOSPC || code == EDQUOT || code == EIO || code == EROFS);
+    return FailedMessage{
+        {disk ? ErrorCode::kWriteFailed : ErrorCode::kInternal, error.what(), {}, {}}};
   } catch (const std::exception& exception) {
     return FailedMessage{{ErrorCode::kInternal, exception.what(), {}, {}}};
   }

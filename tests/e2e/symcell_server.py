@@ -66,6 +66,7 @@ class Server:
         self.data_dir = pathlib.Path(data_dir or tempfile.mkdtemp(prefix="symcell-e2e-"))
         self.flags = {"workers": 2, "log_format": "json", "grace": 0,
                       "max_elements": 500_000_000, **flags}
+        self.state_dir = self.data_dir / "state"
         self.process = None
         self.port = None
 
@@ -74,7 +75,7 @@ class Server:
         with contextlib.suppress(FileNotFoundError):
             port_file.unlink()
         command = [binary(), "serve", "--port", "0", "--port-file", str(port_file),
-                   "--data-dir", str(self.data_dir / "state")]
+                   "--data-dir", str(self.state_dir)]
         for name, value in self.flags.items():
             command += ["--" + name.replace("_", "-"), str(value)]
         self.log = open(self.data_dir / "log", "ab")

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "server/jobs/sqlite_job_store.hpp"
+#include "server/jobs/sqlite_schema.hpp"
 #include "tests/support/test_files.hpp"
 #include "tests/unit/server/service_under_test.hpp"
 

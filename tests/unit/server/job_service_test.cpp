@@ -46,6 +46,26 @@ TEST_F(JobServiceTest, AFullQueueRefusesAndHasRoomAgainLater) {
   EXPECT_EQ(service_.submit().status, SubmitStatus::kAccepted);
 }
 
+TEST_F(JobServiceTest, ClientsTakeTurnsAndNoneTakesAllPlaces) {
+  ASSERT_TRUE(service_.close());
+  service_.limits.queue_limit = 20;
+  service_.open();
+  occupy_worker();
+  std::vector<std::string> greedy;
+  for (int i = 0; i < 18; ++i) greedy.push_back(service_.submit("", kInfinity, "greedy").job.id);
+  EXPECT_EQ(service_.submit("", kInfinity, "greedy").status, SubmitStatus::kQueueFull);
+  EXPECT_TRUE(service_.jobs->queue_is_full("greedy"));
+  EXPECT_FALSE(service_.jobs->queue_is_full("modest"));
+  const auto modest = service_.submit("", kInfinity, "modest");
+  ASSERT_EQ(modest.status, SubmitStatus::kAccepted);
+  service_.engine.open_gate();
+  ASSERT_TRUE(service_.reaches(greedy.back(), JobState::kSucceeded));
+  // Its turn came after the first of the other's.
+  const auto started = [&](const std::string& id) { return *service_.jobs->find(id)->started_ms; };
+  EXPECT_LE(started(modest.job.id), started(greedy[1]));
+  EXPECT_GE(started(modest.job.id), started(greedy[0]));
+}
+
 TEST_F(JobServiceTest, AWaitingJobIsCancelledAtOnce) {
   occupy_worker();
   const std::string id = service_.submit().job.id;
@@ -56,7 +76,8 @@ TEST_F(JobServiceTest, AWaitingJobIsCancelledAtOnce) {
 
 TEST_F(JobServiceTest, ARunningJobIsCancelledSoon) {
   const std::string id = occupy_worker();
-  EXPECT_TRUE(eventually([&] { return service_.jobs->progress(id)->elements == 42U; }));
+  EXPECT_TRUE(eventually(
+      [&] { return service_.jobs->progress(*service_.jobs->find(id))->elements == 42U; }));
   service_.jobs->cancel(id);
   EXPECT_TRUE(service_.reaches(id, JobState::kCancelled));
 }

@@ -49,6 +49,47 @@ TEST_F(JobsHttpTest, ARunningJobShowsItsProgress) {
   EXPECT_EQ(job(id)["progress"]["fraction"], 0.5);
 }
 
+TEST_F(JobsHttpTest, AFinishedJobCanBeRepeated) {
+  const std::string id = submit("{\"fold\":2}")["id"];
+  ASSERT_TRUE(reaches(id, "succeeded"));
+  EXPECT_EQ(job(id)["links"]["rerun"], "/v1/jobs/" + id + "/rerun");
+  const httplib::Headers headers{{"Idempotency-Key", "again"}, {"Prefer", "wait=30"}};
+  const auto again = client().Post("/v1/jobs/" + id + "/rerun", headers, "", "");
+  ASSERT_TRUE(again);
+  ASSERT_EQ(again->status, 201) << again->body;
+  const auto document = nlohmann::json::parse(again->body);
+  EXPECT_NE(document["id"], id);
+  EXPECT_EQ(document["state"], "succeeded");
+  EXPECT_EQ(document["options"], job(id)["options"]);
+  const auto replayed = client().Post("/v1/jobs/" + id + "/rerun", headers, "", "");
+  EXPECT_EQ(nlohmann::json::parse(replayed->body)["id"], document["id"]);
+  // Each has a model of its own.
+  EXPECT_EQ(client().Delete("/v1/jobs/" + id)->status, 204);
+  EXPECT_EQ(client().Get("/v1/jobs/" + std::string(document["id"]) + "/model")->body,
+            square_json());
+  EXPECT_EQ(client().Post("/v1/jobs/" + id + "/rerun")->status, 404);
+}
+
+TEST_F(JobsHttpTest, OnlyWhatHasEndedAndHasItsModelCanBeRepeated) {
+  engine_.close_gate();
+  const std::string id = submit()["id"];
+  EXPECT_EQ(problem_of(client().Post("/v1/jobs/" + id + "/rerun"), 409)["code"], "not_finished");
+  ASSERT_TRUE(reaches(id, "running"));
+  client().Post("/v1/jobs/" + id + "/cancel");
+  ASSERT_TRUE(reaches(id, "cancelled"));
+  service_->jobs().store().forget_model(id);
+  EXPECT_EQ(problem_of(client().Post("/v1/jobs/" + id + "/rerun"), 410)["code"], "model_gone");
+  EXPECT_EQ(problem_of(client().Get("/v1/jobs/" + id + "/model"), 410)["code"], "model_gone");
+  EXPECT_FALSE(job(id)["links"].contains("rerun"));
+  EXPECT_FALSE(job(id)["links"].contains("model"));
+}
+
+TEST_F(JobsHttpTest, WebhooksAreRefusedWhereNoneAreSent) {
+  const auto refused = client().Post("/v1/jobs", {{"Webhook-Url", "https://hooks.example/"}},
+                                     job_body(), "application/json");
+  EXPECT_EQ(problem_of(refused, 422)["code"], "webhook_refused");
+}
+
 TEST_F(JobsHttpTest, TheKeyMakesRequestsOne) {
   const httplib::Headers key{{"Idempotency-Key", "order-7"}};
   const auto first = client().Post("/v1/jobs", key, job_body(), "application/json");

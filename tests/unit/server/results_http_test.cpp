@@ -72,6 +72,51 @@ TEST_F(ResultsHttpTest, DecksTakeTheirOptionsFromTheQuery) {
   EXPECT_EQ(client().Head(path_ + "/cell?format=inp&analysis=modal&material=steel")->status, 422);
 }
 
+TEST_F(ResultsHttpTest, RawResultsHaveLengthsAndParts) {
+  for (const std::string& end : {"/cell", "/full", "/statistics", "/model"}) {
+    const auto whole = client().Get(path_ + end);
+    ASSERT_TRUE(whole);
+    const std::string bytes = whole->body;
+    EXPECT_EQ(whole->get_header_value("Content-Length"), std::to_string(bytes.size())) << end;
+    EXPECT_EQ(whole->get_header_value("Accept-Ranges"), "bytes");
+    EXPECT_EQ(client().Head(path_ + end)->get_header_value("Content-Length"),
+              std::to_string(bytes.size()));
+    const auto part = [&](const std::string& range) {
+      return client().Get(path_ + end, {{"Range", range}, {"Accept-Encoding", "gzip"}});
+    };
+    const std::string total = "/" + std::to_string(bytes.size());
+    EXPECT_EQ(part("bytes=0-0")->body, bytes.substr(0, 1));
+    EXPECT_EQ(part("bytes=3-11")->status, 206);
+    EXPECT_EQ(part("bytes=3-11")->body, bytes.substr(3, 9));
+    EXPECT_EQ(part("bytes=3-11")->get_header_value("Content-Range"), "bytes 3-11" + total);
+    EXPECT_EQ(part("bytes=7-")->body, bytes.substr(7));
+    EXPECT_EQ(part("bytes=-5")->body, bytes.substr(bytes.size() - 5));
+    EXPECT_EQ(part("bytes=-999999999")->body, bytes);
+    EXPECT_EQ(part("bytes=5-999999999")->body, bytes.substr(5));
+    const auto beyond = part("bytes=999999999-");
+    EXPECT_EQ(problem_of(beyond, 416)["code"], "range_not_satisfiable");
+    EXPECT_EQ(beyond->get_header_value("Content-Range"), "bytes *" + total);
+    for (const char* other : {"bytes=0-1,4-5", "bytes=9-3", "bytes=x-", "lines=0-1", "bytes=-"}) {
+      EXPECT_EQ(part(other)->status, 200) << other;
+    }
+  }
+}
+
+TEST_F(ResultsHttpTest, APartIsOfTheRepresentationThatTheClientHas) {
+  const std::string etag = client().Get(path_ + "/cell")->get_header_value("ETag");
+  const auto part = [&](const std::string& condition) {
+    return client().Get(path_ + "/cell", {{"Range", "bytes=0-3"}, {"If-Range", condition}});
+  };
+  EXPECT_EQ(part(etag)->status, 206);
+  EXPECT_EQ(part("\"another\"")->status, 200);
+}
+
+TEST_F(ResultsHttpTest, TextFormatsHaveNoParts) {
+  const auto answer = client().Get(path_ + "/cell?format=json", {{"Range", "bytes=0-3"}});
+  EXPECT_EQ(answer->status, 200);
+  EXPECT_EQ(answer->get_header_value("Accept-Ranges"), "none");
+}
+
 TEST_F(ResultsHttpTest, WhatIsNotOfferedIsRefused) {
   problem_of(client().Get(path_ + "/cell?format=dxf"), 400);
   problem_of(client().Get(path_ + "/cell", {{"Accept", "image/png"}}), 406);

