@@ -55,7 +55,7 @@ function(media_type_of file result)
   endif()
   math(EXPR at "${at} + 1")
   list(GET types ${at} type)
-  set(${result} ${type} PARENT_SCOPE)
+  set(${result} "${type}" PARENT_SCOPE)
 endfunction()
 
 build_bundle(bundle)
