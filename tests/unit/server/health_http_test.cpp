@@ -48,13 +48,19 @@ TEST_F(HealthHttpTest, MetricsCountWhatHappened) {
 }
 
 TEST_F(HealthHttpTest, PagesAndDescriptionAreServed) {
-  for (const char* path : {"/", "/docs"}) {
+  for (const char* path : {"/", "/docs", "/docs/plain"}) {
     const auto page = client().Get(path);
     ASSERT_TRUE(page);
     EXPECT_EQ(page->status, 200);
     EXPECT_EQ(page->get_header_value("Content-Type"), "text/html; charset=utf-8");
-    EXPECT_NE(page->body.find("curl"), std::string::npos);
+    EXPECT_NE(page->body.find("Symcell"), std::string::npos);
+    // Pages that run scripts name whose, and all have one policy.
+    EXPECT_EQ(page->get_header_value_count("Content-Security-Policy"), 1U);
+    const std::string policy = page->get_header_value("Content-Security-Policy");
+    EXPECT_TRUE(policy.starts_with("default-src 'none'"));
+    EXPECT_EQ(policy.find("script-src 'unsafe"), std::string::npos);
   }
+  EXPECT_NE(client().Get("/docs/plain")->body.find("curl"), std::string::npos);
   const auto description = client().Get("/openapi.yaml");
   ASSERT_TRUE(description);
   EXPECT_EQ(description->body,
