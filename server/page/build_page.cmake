@@ -27,7 +27,7 @@ function(build_bundle result)
   endif()
   if(NOT installed STREQUAL lock)
     execute_process(
-      COMMAND ${NPM} ci --prefer-offline --ignore-scripts --no-progress --fetch-retries=1 WORKING_DIRECTORY ${folder}
+      COMMAND ${NPM} ci --prefer-offline --ignore-scripts --no-progress --fetch-retries=1 --fetch-timeout=30000 WORKING_DIRECTORY ${folder}
       RESULT_VARIABLE failed OUTPUT_VARIABLE words ERROR_VARIABLE words)
     if(failed)
       message(STATUS "npm ci could not install what the pages need; the program will serve plain pages, "
@@ -46,8 +46,7 @@ function(build_bundle result)
 endfunction()
 
 function(media_type_of file result)
-  set(types .html "text/html\; charset=utf-8" .js "text/javascript\; charset=utf-8" .css "text/css\; charset=utf-8"
-            .svg image/svg+xml .json application/json .stl model/stl)
+  set(types .html text/html .js text/javascript .css text/css .svg image/svg+xml .json application/json .stl model/stl)
   get_filename_component(ending ${file} LAST_EXT)
   list(FIND types ${ending} at)
   if(at LESS 0)
@@ -55,6 +54,9 @@ function(media_type_of file result)
   endif()
   math(EXPR at "${at} + 1")
   list(GET types ${at} type)
+  if(type MATCHES "^text/")
+    string(APPEND type "; charset=utf-8")
+  endif()
   set(${result} "${type}" PARENT_SCOPE)
 endfunction()
 
@@ -66,7 +68,7 @@ if(bundle)
   file(GLOB_RECURSE built RELATIVE ${bundle} ${bundle}/*)
   list(SORT built)
   foreach(file ${built})
-    media_type_of(${file} type)
+    media_type_of("${file}" type)
     set(packed ${WORK}/packed/${count}.gz)
     file(MAKE_DIRECTORY ${WORK}/packed)
     execute_process(COMMAND gzip -9nc ${bundle}/${file} OUTPUT_FILE ${packed} RESULT_VARIABLE failed)

@@ -34,8 +34,8 @@ TEST_F(HealthHttpTest, MetricsCountWhatHappened) {
        {"symcell_jobs{state=\"succeeded\"} 1", "symcell_jobs{state=\"failed\"} 1",
         "symcell_job_errors_total{code=\"not_symmetric\"} 1",
         "symcell_request_errors_total{code=\"json_syntax\"} 1",
-        "symcell_http_requests_total{method=\"POST\",route=\"/v1/jobs\",status=\"202\"} 2",
-        "symcell_http_requests_total{method=\"GET\",route=\"none\",status=\"404\"} 1",
+        "symcell_http_requests_total{route=\"/v1/jobs\",method=\"POST\",status=\"202\"} 2",
+        "symcell_http_requests_total{route=\"none\",method=\"GET\",status=\"404\"} 1",
         "symcell_job_duration_seconds_count{state=\"succeeded\"} 1", "symcell_queue_length 0",
         "symcell_queue_limit 3"}) {
     // Requests are counted once their answer is out, jobs once their row is written.
@@ -48,13 +48,19 @@ TEST_F(HealthHttpTest, MetricsCountWhatHappened) {
 }
 
 TEST_F(HealthHttpTest, PagesAndDescriptionAreServed) {
-  for (const char* path : {"/", "/docs"}) {
+  for (const char* path : {"/", "/docs", "/docs/plain"}) {
     const auto page = client().Get(path);
     ASSERT_TRUE(page);
     EXPECT_EQ(page->status, 200);
     EXPECT_EQ(page->get_header_value("Content-Type"), "text/html; charset=utf-8");
     EXPECT_NE(page->body.find("Symcell"), std::string::npos);
+    // Pages that run scripts name whose, and all have one policy.
+    EXPECT_EQ(page->get_header_value_count("Content-Security-Policy"), 1U);
+    const std::string policy = page->get_header_value("Content-Security-Policy");
+    EXPECT_TRUE(policy.starts_with("default-src 'none'"));
+    EXPECT_EQ(policy.find("script-src 'unsafe"), std::string::npos);
   }
+  EXPECT_NE(client().Get("/docs/plain")->body.find("curl"), std::string::npos);
   const auto description = client().Get("/openapi.yaml");
   ASSERT_TRUE(description);
   EXPECT_EQ(description->body,
