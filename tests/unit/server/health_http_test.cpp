@@ -34,8 +34,8 @@ TEST_F(HealthHttpTest, MetricsCountWhatHappened) {
        {"symcell_jobs{state=\"succeeded\"} 1", "symcell_jobs{state=\"failed\"} 1",
         "symcell_job_errors_total{code=\"not_symmetric\"} 1",
         "symcell_request_errors_total{code=\"json_syntax\"} 1",
-        "symcell_http_requests_total{route=\"/v1/jobs\",method=\"POST\",status=\"202\"} 2",
-        "symcell_http_requests_total{route=\"none\",method=\"GET\",status=\"404\"} 1",
+        "symcell_http_requests_total{method=\"POST\",route=\"/v1/jobs\",status=\"202\"} 2",
+        "symcell_http_requests_total{method=\"GET\",route=\"none\",status=\"404\"} 1",
         "symcell_job_duration_seconds_count{state=\"succeeded\"} 1", "symcell_queue_length 0",
         "symcell_queue_limit 3"}) {
     // Requests are counted once their answer is out, jobs once their row is written.

@@ -73,7 +73,7 @@ TEST_F(ResultsHttpTest, DecksTakeTheirOptionsFromTheQuery) {
 }
 
 TEST_F(ResultsHttpTest, RawResultsHaveLengthsAndParts) {
-  for (const std::string& end : {"/cell", "/full", "/statistics", "/model"}) {
+  for (const std::string end : {"/cell", "/full", "/statistics", "/model"}) {
     const auto whole = client().Get(path_ + end);
     ASSERT_TRUE(whole);
     const std::string bytes = whole->body;

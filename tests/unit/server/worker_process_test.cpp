@@ -142,8 +142,10 @@ TEST_F(WorkerEngineTest, GivesMoreRequestsThanWorkersTheirTurn) {
     const auto done = run.get();
     EXPECT_TRUE(done) << done.error().message;
   }
-  std::string metrics;
-  engine.append_metrics(metrics);
+  Metrics figures;
+  engine.declare_metrics(figures);
+  engine.report_metrics(figures);
+  const std::string metrics = figures.text();
   EXPECT_NE(metrics.find("symcell_worker_processes{state=\"busy\"} 0"), std::string::npos);
   EXPECT_NE(metrics.find("symcell_worker_processes{state=\"idle\"} 1"), std::string::npos)
       << metrics;
