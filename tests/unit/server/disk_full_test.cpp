@@ -27,6 +27,13 @@ class FullDiskEngine final : public JobEngine {
                                             ExecutionContext& context) override {
     return stub_.inspect(model, format, options, context);
   }
+  [[nodiscard]] Result<void> draw(const std::filesystem::path& model,
+                                  ModelFormat format,
+                                  const MeshOptions& options,
+                                  const std::filesystem::path& picture,
+                                  ExecutionContext& context) override {
+    return stub_.draw(model, format, options, picture, context);
+  }
 
   std::atomic<bool> full{true};
   std::atomic<int> runs{0};
