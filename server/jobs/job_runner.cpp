@@ -1,5 +1,8 @@
 #include "server/jobs/job_runner.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <exception>
@@ -48,14 +51,20 @@ bool may_pass(const std::system_error& error) {
   }
 }
 
-// Also after a try that came half way.
+void sync_file(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+  const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
+  const int error = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!synced) throw std::system_error(error, std::generic_category(), file.string());
+}
+
+// Also after a try that came half way. The folder is synchronised by whoever calls, once for all files.
 void publish_file(const std::filesystem::path& file) {
   const std::filesystem::path part = JobFiles::partial(file);
-  if (std::filesystem::exists(file) && !std::filesystem::exists(part)) {
-    sync_directory(file.parent_path());
-    return;
-  }
-  rename_durably(part, file);
+  if (std::filesystem::exists(file) && !std::filesystem::exists(part)) return;
+  sync_file(part);
+  std::filesystem::rename(part, file);
 }
 
 std::int64_t file_bytes(const std::filesystem::path& file) {
@@ -329,6 +338,7 @@ bool JobRunner::publish(const Job& job) {
   return persist(job.id, [&] {
     publish_file(parts_.files.statistics(job));
     publish_file(parts_.files.cell(job));
+    sync_directory(parts_.files.cell(job).parent_path());
   });
 }
 
