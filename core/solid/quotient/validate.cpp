@@ -198,7 +198,7 @@ class Checker {
     return {};
   }
 
-  Result<void> angles() const {
+  [[nodiscard]] Result<void> angles() const {
     const auto wrong = find_wrong_turn(mesh_);
     if (!wrong) return {};
     return broken("embedding", wrong->tet, wrong->edge, "dihedral angles do not make one turn");
