@@ -73,7 +73,9 @@ std::size_t GlbDocument::add_positions(const std::vector<Point3>& points) {
   for (const Point3& p : points) {
     const std::array<double, 3> coordinates{p.x, p.y, p.z};
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto c = static_cast<float>(coordinates[i]);
+      // What single precision cannot hold is at its end: a picture has no infinities.
+      constexpr double kMost = std::numeric_limits<float>::max();
+      const auto c = static_cast<float>(std::clamp(coordinates[i], -kMost, kMost));
       least[i] = std::min(least[i], c);
       most[i] = std::max(most[i], c);
       numbers_.push_back(c);

@@ -123,7 +123,7 @@ class ModelPicture {
       least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
       most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
     }
-    centre_ = 0.5 * (least + most);
+    centre_ = 0.5 * least + 0.5 * most;
   }
 
   Key group_of(std::size_t entity, std::int32_t marker) const {
