@@ -9,6 +9,7 @@ from pathlib import Path
 
 import npm_packages
 from symcell_server import ROOT, Server
+from test_access import keys
 
 try:
     import meshio
@@ -31,17 +32,22 @@ class PageTest(unittest.TestCase):
             cls.server.remove()
             raise unittest.SkipTest("the program was built without its pages (npm was missing)")
         cls.shared = Server(workers=1, cors_origin="*").start()
+        cls.locked = Server(workers=1)
+        cls.key = keys(cls.locked, "create", "--name", "page")
+        cls.locked.start()
 
     @classmethod
     def tearDownClass(cls):
         cls.server.remove()
         cls.shared.remove()
+        cls.locked.remove()
 
     def test_people_come_to_their_meshes(self):
         with tempfile.TemporaryDirectory() as downloads:
             environment = {**os.environ, "SYMCELL_URL": f"http://127.0.0.1:{self.server.port}",
                            "SYMCELL_SHARED_URL": f"http://127.0.0.1:{self.shared.port}",
-                           "SYMCELL_CHROMIUM": self.chromium, "SYMCELL_DOWNLOADS": downloads,
+                           "SYMCELL_LOCKED_URL": f"http://127.0.0.1:{self.locked.port}",
+                           "SYMCELL_KEY_TEXT": self.key, "SYMCELL_CHROMIUM": self.chromium, "SYMCELL_DOWNLOADS": downloads,
                            "SYMCELL_GEAR": str(ROOT / "docs" / "examples" / "gear.stl"),
                            "SYMCELL_FLANGE": str(ROOT / "docs" / "examples" / "flange.json")}
             done = subprocess.run(["node", "--test", "--test-reporter=spec", "page_test.mjs"], cwd=self.packages,

@@ -254,6 +254,29 @@ test('the description is read, and calls are tried', async () => {
   await close(page);
 });
 
+test('a key is asked for once, and kept for the tab', async () => {
+  const page = await browser.newPage({ reducedMotion: 'reduce' });
+  page.setDefaultTimeout(patience);
+  await page.goto(process.env.SYMCELL_LOCKED_URL);
+  await page.getByRole('button', { name: 'Hex nut' }).click();
+  const text = page.getByLabel('Key', { exact: true });
+  for (const key of ['not a key', process.env.SYMCELL_KEY_TEXT]) {
+    await text.waitFor();
+    await assertAccessible(page, 'key');
+    await text.fill(key);
+    await page.getByRole('button', { name: 'Go on' }).click();
+    await page.waitForFunction(() => !document.getElementById('key').open || document.getElementById('key-text').value === '');
+  }
+  await page.locator('#found strong').waitFor();
+  await meshed(page);
+  const [download] = await Promise.all([
+    page.waitForEvent('download'), page.getByRole('link', { name: 'cell as vtu', exact: true }).click()]);
+  assert.match(await readFile(await download.path(), 'latin1'), /^<\?xml/);
+  await page.reload();
+  await page.locator('#results').waitFor({ state: 'visible' });
+  await page.close();
+});
+
 test('a page of another origin that is allowed sends models and reads answers', async () => {
   const other = createServer((_, answer) => answer.writeHead(200, { 'Content-Type': 'text/html' }).end('<p>another</p>'));
   await new Promise((listening) => other.listen(0, '127.0.0.1', listening));

@@ -79,9 +79,13 @@ export class ProblemError extends Error {
 const keyName = 'symcell-key';
 let askForKey: () => Promise<string | null> = async () => null;
 
-/** Who is asked for a key when the service wants one. */
+/** Who is asked for a key when the service wants one; once, for all calls that wait for it. */
 export function onKeyWanted(ask: () => Promise<string | null>): void {
-  askForKey = ask;
+  let asked: Promise<string | null> | null = null;
+  askForKey = () => {
+    asked ??= ask().finally(() => { asked = null; });
+    return asked;
+  };
 }
 
 export async function call(path: string, init: RequestInit = {}): Promise<Response> {
@@ -98,6 +102,9 @@ export async function call(path: string, init: RequestInit = {}): Promise<Respon
     }
     if (response.ok) return response;
     if (response.status === 401) {
+      // Another call may have been given one meanwhile.
+      if (sessionStorage.getItem(keyName) !== key) continue;
+      sessionStorage.removeItem(keyName);
       const given = await askForKey();
       if (given) {
         sessionStorage.setItem(keyName, given);

@@ -598,8 +598,12 @@ function showDownloads(job: Job, solid: boolean): void {
     }
   }
   $('downloads').replaceChildren(h('div', { class: 'downloads' }, ...rows),
-    h('p', { class: 'small' }, h('a', { href: `/v1/jobs/${job.id}/statistics`, download: 'statistics.json' }, 'statistics'), ' · ',
-      h('a', { href: `/v1/jobs/${job.id}/model`, download: job.model.name ?? 'model' }, 'model')));
+    h('p', { class: 'small' }, fileLink(`/v1/jobs/${job.id}/statistics`, 'statistics.json', 'statistics'), ' · ',
+      fileLink(`/v1/jobs/${job.id}/model`, job.model.name ?? 'model', 'model')));
+}
+
+function fileLink(path: string, name: string, text: string): HTMLElement {
+  return h('a', { href: path, download: name, onclick: (event: Event) => fetchWithKey(event, path, name) }, text);
 }
 
 // A link carries no key.
