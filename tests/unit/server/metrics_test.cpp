@@ -21,8 +21,9 @@ TEST(MetricsTest, HistogramsAreCumulative) {
   for (const double value : {0.1, 0.5, 1.0, 9.0}) metrics.observe("seconds", value);
   EXPECT_EQ(metrics.text(),
             "# HELP seconds Time.\n# TYPE seconds histogram\n"
+            "seconds_count 4\nseconds_sum 10.6\n"
             "seconds_bucket{le=\"0.5\"} 2\nseconds_bucket{le=\"2\"} 3\n"
-            "seconds_bucket{le=\"+Inf\"} 4\nseconds_sum 10.6\nseconds_count 4\n");
+            "seconds_bucket{le=\"+Inf\"} 4\n");
 }
 
 }  // namespace
