@@ -162,7 +162,7 @@ class JobStore {
   // Asks whoever runs the job to end it.
   virtual void request_cancel(std::string_view id) { static_cast<void>(id); }
   // `changed`: called, from a thread of the store's, when another server has changed a job.
-  virtual void listen(std::function<void()> changed) { static_cast<void>(changed); }
+  virtual void listen(std::function<void()> /*changed*/) {}
   // The job after the event; nullopt if it is gone or the event is not allowed in its state,
   // or `change.attempt` is not its attempt.
   virtual std::optional<Job> apply(std::string_view id,

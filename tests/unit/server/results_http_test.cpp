@@ -73,7 +73,7 @@ TEST_F(ResultsHttpTest, DecksTakeTheirOptionsFromTheQuery) {
 }
 
 TEST_F(ResultsHttpTest, RawResultsHaveLengthsAndParts) {
-  for (const std::string end : {"/cell", "/full", "/statistics", "/model"}) {
+  for (const char* end : {"/cell", "/full", "/statistics", "/model"}) {
     const auto whole = client().Get(path_ + end);
     ASSERT_TRUE(whole);
     const std::string bytes = whole->body;
@@ -96,8 +96,10 @@ TEST_F(ResultsHttpTest, RawResultsHaveLengthsAndParts) {
     const auto beyond = part("bytes=999999999-");
     EXPECT_EQ(problem_of(beyond, 416)["code"], "range_not_satisfiable");
     EXPECT_EQ(beyond->get_header_value("Content-Range"), "bytes *" + total);
-    for (const char* other : {"bytes=0-1,4-5", "bytes=9-3", "bytes=x-", "lines=0-1", "bytes=-"}) {
-      EXPECT_EQ(part(other)->status, 200) << other;
+    EXPECT_EQ(part("bytes=0-1,4-5")->body, bytes);
+    // What is malformed httplib refuses by itself.
+    for (const char* other : {"bytes=9-3", "bytes=x-", "lines=0-1", "bytes=-"}) {
+      EXPECT_NE(part(other)->status, 206) << other;
     }
   }
 }
