@@ -23,6 +23,8 @@ constexpr double kSameDirection = 1 * kRadiansADegree;
 constexpr double kNormalsAgree = 31 * kRadiansADegree;
 // Through three points there always is a circle.
 constexpr std::size_t kLeastLines = 5;
+// Through four points there always is a sphere, and a bent plate has six corners.
+constexpr std::size_t kLeastOfSphere = 12;
 // A gap of less than that between vertices is a side of a coarse tessellation.
 constexpr double kWideGap = 100 * kRadiansADegree;
 // A radius of more than so many extents of the face is not told from a plane, or from noise.
@@ -118,10 +120,11 @@ class Fitter {
     for (const Point3& direction : directions()) {
       if (auto fit = cylinder(direction)) return *fit;
     }
-    if (auto fit = sphere()) return *fit;
+    // Two rings about one axis lie on a sphere, too: the cone is what was meant.
     for (const Point3& direction : directions()) {
       if (auto fit = cone(direction)) return *fit;
     }
+    if (auto fit = sphere()) return *fit;
     if (auto fit = torus()) return *fit;
     return {};
   }
@@ -281,7 +284,7 @@ class Fitter {
     fit.kind = FaceKind::kSphere;
     fit.origin = centroid_ + centre;
     fit.radius = radius;
-    if (points_.size() <= kLeastLines) return std::nullopt;
+    if (points_.size() < kLeastOfSphere) return std::nullopt;
     for (const Point3& p : points_) {
       if (std::abs(distance(p, fit.origin) - radius) > tolerance(radius)) return std::nullopt;
     }

@@ -166,7 +166,8 @@ Inspection inspected(const TriangleSurface& surface, const MeshOptions& options)
 std::map<std::string, FaceGroup> groups_of(const TriangleSurface& surface,
                                            const MeshOptions& options) {
   std::map<std::string, FaceGroup> by_name;
-  for (const FaceGroup& g : std::get<SolidInspection>(inspected(surface, options)).groups) {
+  const Inspection found = inspected(surface, options);
+  for (const FaceGroup& g : std::get<SolidInspection>(found).groups) {
     by_name[g.name] = g;
   }
   return by_name;
