@@ -1,0 +1,122 @@
+#include "core/solid/sizes/size_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/geometry/triangle_tree.hpp"
+
+namespace symcell::solid {
+namespace {
+
+constexpr std::int32_t kLeafSize = 4;  // sources: below, a look at each is quicker than a tree
+// Copies to each side of a source that may be nearest to a place in its sector: the next one, and one more
+// for sources that reach into the next sector.
+constexpr std::int32_t kCopies = 2;
+// Of a source's size.
+constexpr double kPlateau = 0.5;
+
+Point3 centroid(const SizeSource& s) {
+  return (1.0 / 3) * (s.place[0] + s.place[1] + s.place[2]);
+}
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+SizeField::SizeField(const std::vector<SizeSource>& sources, double gradation, std::int32_t fold)
+    : rotations_(fold), slope_(gradation - 1) {
+  // Every place is looked up in the first sector, so all copies get the same.
+  const std::int32_t copies = std::min(fold, 2 * kCopies + 1);
+  for (const SizeSource& s : sources) {
+    const std::int32_t back = rotations_.reduce(-std::int64_t{sector_of(centroid(s))} - kCopies);
+    for (std::int32_t k = 0; k < copies; ++k) {
+      SizeSource copy = s;
+      for (Point3& p : copy.place) p = rotations_.rotate(p, rotations_.add(back, k));
+      sources_.push_back(copy);
+    }
+  }
+  if (!sources_.empty()) build(0, static_cast<std::int32_t>(sources_.size()));
+}
+
+std::int32_t SizeField::sector_of(Point3 p) const {
+  const std::int32_t n = rotations_.fold();
+  if (n == 1) return 0;
+  const double turn = std::atan2(p.y, p.x) / (2 * std::numbers::pi);
+  const double share = turn < 0 ? turn + 1 : turn;
+  return std::min(n - 1, static_cast<std::int32_t>(share * n));
+}
+
+std::int32_t SizeField::build(std::int32_t first, std::int32_t last) {
+  const auto id = static_cast<std::int32_t>(nodes_.size());
+  Node node;
+  node.low = node.high = sources_[at(first)].place[0];
+  node.first = first;
+  node.last = last;
+  for (std::int32_t i = first; i < last; ++i) {
+    for (const Point3& p : sources_[at(i)].place) {
+      node.low = {std::min(node.low.x, p.x), std::min(node.low.y, p.y), std::min(node.low.z, p.z)};
+      node.high = {std::max(node.high.x, p.x), std::max(node.high.y, p.y),
+                   std::max(node.high.z, p.z)};
+    }
+    node.least = std::min(node.least, sources_[at(i)].size);
+  }
+  nodes_.push_back(node);
+  if (last - first <= kLeafSize) return id;
+  const Point3 d = node.high - node.low;
+  const auto along = [&](const SizeSource& s) {
+    const Point3 c = centroid(s);
+    return d.x >= d.y && d.x >= d.z ? c.x : (d.y >= d.z ? c.y : c.z);
+  };
+  const std::int32_t middle = first + (last - first) / 2;
+  std::nth_element(sources_.begin() + first, sources_.begin() + middle, sources_.begin() + last,
+                   [&](const SizeSource& a, const SizeSource& b) { return along(a) < along(b); });
+  build(first, middle);
+  const std::int32_t right = build(middle, last);
+  nodes_[at(id)].right = right;
+  return id;
+}
+
+double SizeField::allowed(double size, double distance) const {
+  return size + slope_ * std::max(0.0, distance - kPlateau * size);
+}
+
+double SizeField::bound_of(const Node& node, Point3 p) const {
+  const double dx = std::max({node.low.x - p.x, 0.0, p.x - node.high.x});
+  const double dy = std::max({node.low.y - p.y, 0.0, p.y - node.high.y});
+  const double dz = std::max({node.low.z - p.z, 0.0, p.z - node.high.z});
+  const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
+  // A larger size has a wider plateau, but never allows less: of those in the node the least decides
+  // as long as growth is no faster than two to one; beyond, only that no source allows less than it is.
+  return slope_ * kPlateau <= 1 ? allowed(node.least, distance) : node.least;
+}
+
+void SizeField::look_at(std::int32_t id, Point3 p, double& best) const {
+  const Node& node = nodes_[at(id)];
+  if (node.right == 0) {
+    for (std::int32_t i = node.first; i < node.last; ++i) {
+      const SizeSource& s = sources_[at(i)];
+      if (s.size >= best) continue;
+      const Point3 near = closest_point(p, s.place[0], s.place[1], s.place[2]);
+      best = std::min(best, allowed(s.size, distance(p, near)));
+    }
+    return;
+  }
+  std::pair<double, std::int32_t> near{bound_of(nodes_[at(id + 1)], p), id + 1};
+  std::pair<double, std::int32_t> far{bound_of(nodes_[at(node.right)], p), node.right};
+  if (far < near) std::swap(near, far);
+  if (near.first < best) look_at(near.second, p, best);
+  if (far.first < best) look_at(far.second, p, best);
+}
+
+double SizeField::max_edge(Point3 p) const {
+  double best = kNone;
+  if (nodes_.empty()) return best;
+  look_at(0, rotations_.rotate(p, rotations_.reduce(-std::int64_t{sector_of(p)})), best);
+  return best;
+}
+
+}  // namespace symcell::solid
