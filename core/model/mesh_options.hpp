@@ -46,7 +46,7 @@ struct SizeRequest {
   Kind kind = Kind::kMarker;
   // A marker: of edges on its segments or facets; a vertex: of edges at it, from 0; a region's attribute.
   std::int64_t id = 0;
-  double size = 0;    // input units
+  double size = 0;         // input units
   std::string group = {};  // a marker by its name
   Point3 point = {};       // solids: of edges there, and at its copies
   friend bool operator==(const SizeRequest&, const SizeRequest&) = default;
