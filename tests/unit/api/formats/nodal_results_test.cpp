@@ -77,7 +77,9 @@ TEST(NodalResults, AWaveComesBackOnTheFullMesh) {
       const NodalDiameter found = find_nodal_diameter(cell, result, std::nullopt);
       EXPECT_LT(found.mismatch, 1e-12);
       // Half the fold either way is the same.
-      if (2 * std::abs(k) != fold) EXPECT_EQ(found.signed_diameter, k) << fold;
+      if (2 * std::abs(k) != fold) {
+        EXPECT_EQ(found.signed_diameter, k) << fold;
+      }
       for (const double phase : {0.0, 1.0}) {
         const std::string text = full_of(cell, result, found.signed_diameter, phase);
         const auto mesh = read_vtu(text);
