@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "api/printable.hpp"
+#include "api/schema/assignments.hpp"
 #include "api/schema/gates.hpp"
 
 namespace symcell::internal {
@@ -331,82 +332,8 @@ Result<void> set_repair(const OptionInfo& info, const OptionValue& value, MeshOp
   return refuse(ErrorCode::kBadOption, info, value, "none, safe, all or wrap");
 }
 
-// Of a list "marker:3=0.5,vertex:17=0.02,region:2=1,point:0/1.5/2=0.1,bore=0.2".
-struct Assignment {
-  SizeRequest::Kind kind = SizeRequest::Kind::kMarker;
-  std::int64_t id = 0;
-  double value = 0;
-  std::string name;  // of a group
-  Point3 point;
-};
-
-// The whole of `text` as a number.
-template <class Number>
-bool read_whole(std::string_view text, Number& into) {
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), into);
-  return !text.empty() && error == std::errc{} && stop == text.data() + text.size();
-}
-
-// "1.5/0/2"
-bool read_place(std::string_view text, Point3& into) {
-  for (double* part : {&into.x, &into.y, &into.z}) {
-    const std::string_view one = text.substr(0, text.find('/'));
-    if (!read_whole(one, *part) || !(std::abs(*part) <= kMostCoordinate)) return false;
-    text.remove_prefix(std::min(text.size(), one.size() + 1));
-  }
-  return text.empty();
-}
-
-// What an assignment is of: "marker:3", or a name.
-bool read_subject(std::string_view text, Assignment& next) {
-  const auto taken = [&](std::string_view word) {
-    if (!text.starts_with(word) || text.size() <= word.size()) return false;
-    const char after = text[word.size()];
-    if (after != ':' && after != ' ') return false;
-    text.remove_prefix(word.size() + 1);
-    return true;
-  };
-  using Of = SizeRequest::Kind;
-  for (const auto& [word, kind] : {std::pair<std::string_view, Of>{"marker", Of::kMarker},
-                                   {"vertex", Of::kVertex},
-                                   {"region", Of::kRegion}}) {
-    next.kind = kind;
-    if (taken(word)) return read_whole(text, next.id);
-  }
-  next.kind = Of::kPoint;
-  if (taken("point")) return read_place(text, next.point);
-  next.kind = Of::kGroup;
-  const bool said = taken("group");
-  next.name = text;
-  // A number alone could be a marker, a vertex or a region.
-  double number = 0;
-  return !text.empty() && (said || !read_whole(text, number));
-}
-
-std::optional<std::vector<Assignment>> as_assignments(const OptionValue& value) {
-  if (value.kind != Kind::kText) return std::nullopt;
-  std::vector<Assignment> all;
-  std::string_view rest = value.text;
-  while (true) {
-    std::string_view one = rest.substr(0, rest.find(','));
-    const bool last = one.size() == rest.size();
-    rest.remove_prefix(std::min(rest.size(), one.size() + 1));
-    one.remove_prefix(std::min(one.find_first_not_of(' '), one.size()));
-    // Names may hold what they like but commas; numbers hold no equals sign.
-    const std::size_t equals = one.rfind('=');
-    Assignment next;
-    const bool read = equals != std::string_view::npos &&
-                      read_subject(one.substr(0, equals), next) &&
-                      read_whole(one.substr(equals + 1), next.value) && next.value > 0 &&
-                      std::isfinite(next.value);
-    if (!read) return std::nullopt;
-    all.push_back(std::move(next));
-    if (last) return all;
-  }
-}
-
 Result<void> set_sizes(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
-  const auto given = as_assignments(value);
+  const auto given = value.kind == Kind::kText ? read_assignments(value.text) : std::nullopt;
   if (!given) {
     return refuse(ErrorCode::kBadOption, info, value,
                   "largest edge lengths of groups, markers, vertices, regions and points, as "
@@ -420,7 +347,7 @@ Result<void> set_sizes(const OptionInfo& info, const OptionValue& value, MeshOpt
 }
 
 Result<void> set_divisions(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
-  const auto given = as_assignments(value);
+  const auto given = value.kind == Kind::kText ? read_assignments(value.text) : std::nullopt;
   const auto is_division = [](const Assignment& a) {
     return a.kind == SizeRequest::Kind::kMarker && a.value == std::floor(a.value) &&
            a.value <= kMostDivisions;
@@ -526,23 +453,7 @@ Json get_memory_limit(const MeshOptions& o, ModelKind) {
 }
 
 Json get_sizes(const MeshOptions& o, ModelKind) {
-  if (o.sizes.empty()) return nullptr;
-  std::string text;
-  for (const SizeRequest& s : o.sizes) {
-    if (!text.empty()) text += ',';
-    switch (s.kind) {
-      case SizeRequest::Kind::kMarker: text += "marker:" + std::to_string(s.id); break;
-      case SizeRequest::Kind::kVertex: text += "vertex:" + std::to_string(s.id); break;
-      case SizeRequest::Kind::kRegion: text += "region:" + std::to_string(s.id); break;
-      case SizeRequest::Kind::kGroup: text += "group:" + s.group; break;
-      case SizeRequest::Kind::kPoint:
-        text += "point:" + Json(s.point.x).dump() + '/' + Json(s.point.y).dump() + '/' +
-                Json(s.point.z).dump();
-        break;
-    }
-    text += '=' + Json(s.size).dump();
-  }
-  return text;
+  return o.sizes.empty() ? Json(nullptr) : Json(sizes_as_text(o.sizes));
 }
 
 Json get_preset(const MeshOptions& o, ModelKind) {

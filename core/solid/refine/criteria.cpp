@@ -84,7 +84,11 @@ double Criteria::size_excess2(const TetMeasures& m, std::int32_t region) const {
     const double least = sizes->least() * (1 - kBoundSafety);
     // Most tetrahedra are smaller than any bound.
     if (m.longest2 <= least * least || least * least >= bound2) continue;
-    const double length = sizes->max_edge(m.middle) * (1 - kBoundSafety);
+    // What is allowed leaves the other bounds to decide.
+    const double longest = std::sqrt(m.longest2) / (1 - kBoundSafety);
+    const double allowed = sizes->max_edge(m.middle, longest);
+    if (allowed >= longest) continue;
+    const double length = allowed * (1 - kBoundSafety);
     bound2 = std::min(bound2, length * length);
   }
   double worst = m.longest2 / bound2;

@@ -473,7 +473,10 @@ Result<void> SurfaceSectorSource::find_sizes(const TriangleSurface& given,
 
 void SurfaceSectorSource::make_size_field() {
   if (size_sources_.empty()) return;
-  sizes_ = std::make_shared<const SizeField>(size_sources_, gradation_, symmetry_.fold);
+  // Parts that the file names may be in one sector alone.
+  const auto sources =
+      groups_.named ? size_sources_ : of_first_sector(size_sources_, symmetry_.fold);
+  sizes_ = std::make_shared<const SizeField>(sources, gradation_, symmetry_.fold);
 }
 
 Result<Sector> SurfaceSectorSource::sector(std::int32_t index, ExecutionContext& context) const {

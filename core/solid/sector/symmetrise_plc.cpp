@@ -126,7 +126,9 @@ class PlcSource final : public SectorSource {
     if (size_sources_.empty()) return;
     const double gradation =
         std::isfinite(options_.gradation) ? options_.gradation : kStandardGradation;
-    sizes_ = std::make_shared<const SizeField>(size_sources_, gradation, plc_.symmetry.fold);
+    const std::int32_t fold = plc_.symmetry.fold;
+    sizes_ =
+        std::make_shared<const SizeField>(of_first_sector(size_sources_, fold), gradation, fold);
   }
 
   std::vector<SizeSource> size_sources_;

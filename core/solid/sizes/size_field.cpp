@@ -112,8 +112,8 @@ void SizeField::look_at(std::int32_t id, Point3 p, double& best) const {
   if (far.first < best) look_at(far.second, p, best);
 }
 
-double SizeField::max_edge(Point3 p) const {
-  double best = kNone;
+double SizeField::max_edge(Point3 p, double enough) const {
+  double best = enough;
   if (nodes_.empty()) return best;
   look_at(0, rotations_.rotate(p, rotations_.reduce(-std::int64_t{sector_of(p)})), best);
   return best;

@@ -31,7 +31,10 @@ class SizeField {
   // The longest edge of a tetrahedron with its centroid at p. Up to half a source's size from it that is
   // the size itself: there the centroids of what lies on it are.
   // Cost: O(log N) where sizes vary slowly.
-  [[nodiscard]] double max_edge(Point3 p) const;
+  [[nodiscard]] double max_edge(Point3 p) const { return max_edge(p, kNone); }
+  // The same, or `enough` if it is no less: most questions are whether a length is allowed, and end at once
+  // where it is.
+  [[nodiscard]] double max_edge(Point3 p, double enough) const;
   [[nodiscard]] double least() const { return nodes_.empty() ? kNone : nodes_.front().least; }
 
  private:

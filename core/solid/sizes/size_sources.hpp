@@ -28,6 +28,10 @@ struct SizedModel {
 [[nodiscard]] Result<std::vector<SizeSource>> size_sources(const SizedModel& model,
                                                            const MeshOptions& options);
 
+// Of sources in all copies those in the first sector, and all points, which are in one copy.
+[[nodiscard]] std::vector<SizeSource> of_first_sector(const std::vector<SizeSource>& sources,
+                                                      std::int32_t fold);
+
 // So long on curved faces that an edge between two points of the face is at most chord_error of its
 // radius away from it. Of faces of no known kind the radius is that of their turning from triangle to
 // triangle.

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/formats/cell_archive.hpp"
+#include "api/formats/vtu_reader.hpp"
 #include "core/cell/quadratic.hpp"
 #include "tests/support/extruded_cells.hpp"
 #include "tests/support/sample_cells.hpp"
@@ -31,16 +32,34 @@ std::vector<SymmetryCellMesh> cells() {
   return all;
 }
 
-TEST(CellInput, JsonGivesTheSameBytesInEveryFormat) {
+// Places go through the axis' frame and back, which rounds.
+void expect_same(const SymmetryCellMesh& found, const SymmetryCellMesh& wanted) {
+  const auto a = read_vtu(written(found, MeshPart::kCell, MeshFormat::kVtu));
+  const auto b = read_vtu(written(wanted, MeshPart::kCell, MeshFormat::kVtu));
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->order, b->order);
+  EXPECT_EQ(a->fold, b->fold);
+  EXPECT_EQ(a->elements, b->elements);
+  EXPECT_EQ(a->regions, b->regions);
+  EXPECT_EQ(a->markers, b->markers);
+  EXPECT_EQ(a->lower_to_higher, b->lower_to_higher);
+  ASSERT_EQ(a->points.size(), b->points.size());
+  for (std::size_t i = 0; i < a->points.size(); ++i) {
+    EXPECT_LT(distance(a->points[i], b->points[i]), 1e-13);
+  }
+  EXPECT_EQ(found.lower_facets.size(), wanted.lower_facets.size());
+}
+
+TEST(CellInput, JsonLosesNothing) {
   for (SymmetryCellMesh cell : cells()) {
     cell.marker_names = {{11, "bore"}, {12, "two words"}};
     const std::string json = written(cell, MeshPart::kCell, MeshFormat::kJson);
     const auto read = read_cell(json);
     ASSERT_TRUE(read) << read.error().message;
-    EXPECT_EQ(written(*read, MeshPart::kCell, MeshFormat::kJson), json);
-    EXPECT_EQ(written(*read, MeshPart::kCell, MeshFormat::kVtu),
-              written(cell, MeshPart::kCell, MeshFormat::kVtu));
-    EXPECT_EQ(read->lower_facets.size(), cell.lower_facets.size());
+    expect_same(*read, cell);
+    EXPECT_EQ(read->boundary, cell.boundary);
+    EXPECT_EQ(read->boundary_markers, cell.boundary_markers);
+    EXPECT_EQ(read->marker_names, cell.marker_names);
     EXPECT_EQ(read->boundary_is_higher_image, cell.boundary_is_higher_image);
   }
 }
@@ -70,11 +89,11 @@ TEST(CellInput, ArchivesAndVtuAreRead) {
     const auto first = read_cell(archive);
     ASSERT_TRUE(first);
     const std::string vtu = written(cell, MeshPart::kCell, MeshFormat::kVtu);
-    EXPECT_EQ(written(*first, MeshPart::kCell, MeshFormat::kVtu), vtu);
+    EXPECT_EQ(written(*first, MeshPart::kCell, MeshFormat::kVtu),
+              vtu);  // an archive is the cell itself
     const auto second = read_cell(vtu);
     ASSERT_TRUE(second) << second.error().message;
-    EXPECT_EQ(written(*second, MeshPart::kCell, MeshFormat::kVtu), vtu);
-    EXPECT_EQ(second->lower_facets.size(), cell.lower_facets.size());
+    expect_same(*second, cell);
   }
 }
 

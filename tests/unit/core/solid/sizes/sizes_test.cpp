@@ -125,7 +125,7 @@ TEST(Sizes, OfAGroupHoldOnItAndGrowAwayFromIt) {
   MeshOptions options = with_fold(8);
   const std::size_t coarse = meshed(ring, options).tets.size();
   options.sizes = {{SizeRequest::Kind::kGroup, 0, 0.3, "bore"}};
-  for (const double gradation : {kInfinity, 1.3}) {
+  for (const double gradation : {kInfinity, 2.0}) {
     options.gradation = gradation;
     const Meshed m = meshed(ring, options);
     EXPECT_GT(m.tets.size(), coarse);
@@ -206,7 +206,7 @@ TEST(Sizes, ChordErrorBoundsEdgesOnCurvedGroups) {
 
 TEST(Sizes, PresetsPutElementsAcrossWalls) {
   // A tube with a wall of 0.5.
-  const TriangleSurface tube = ring_surface(96, 5, 4.5, 4);
+  const TriangleSurface tube = ring_surface(96, 5, 4.5, 1.5);
   std::size_t before = 0;
   for (const auto& [preset, edge] : {std::pair{Preset::kCoarse, 0.5}, {Preset::kNormal, 0.25}}) {
     MeshOptions options = with_fold(8);
@@ -232,7 +232,7 @@ TEST(Sizes, WallsAreSeenThroughTheMaterial) {
 }
 
 TEST(MeshToCount, ComesWithinATenth) {
-  for (const std::uint64_t wanted : {1500ULL, 6000ULL}) {
+  for (const std::uint64_t wanted : {1500ULL, 3000ULL}) {
     MeshOptions options = with_fold(8);
     options.target_elements = wanted;
     const Meshed m = meshed(ring_surface(48, 6, 2, 3), options);
