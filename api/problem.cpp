@@ -8,7 +8,7 @@ namespace {
 
 // 400: the request is malformed; 422: well-formed, but the model can't be meshed as asked.
 // Exit codes: 1 meshing failed, 2 wrong usage, 3 the model is not acceptable, 4 a limit.
-constexpr std::array<ProblemRow, 40> kTable{{
+constexpr std::array<ProblemRow, 41> kTable{{
     {ErrorCode::kEmptyFile, 400, 3, "The model is empty"},
     {ErrorCode::kJsonSyntax, 400, 3, "Not well-formed JSON"},
     {ErrorCode::kJsonTooDeep, 400, 3, "JSON is nested too deeply"},
@@ -42,6 +42,7 @@ constexpr std::array<ProblemRow, 40> kTable{{
     {ErrorCode::kStrictWarnings, 422, 3, "There are warnings, and strict allows none"},
     {ErrorCode::kTetrahedralizationFailed, 422, 1, "The model could not be tetrahedralized"},
     {ErrorCode::kBoundUnreachable, 422, 1, "A quality bound cannot be reached"},
+    {ErrorCode::kGateFailed, 422, 1, "A figure of the mesh is not acceptable"},
     {ErrorCode::kElementLimit, 422, 4, "The mesh would have too many elements"},
     {ErrorCode::kTimeLimit, 422, 4, "The time limit was reached"},
     {ErrorCode::kMemoryLimit, 422, 4, "The memory limit was reached"},

@@ -1,5 +1,6 @@
 #include "core/mesh_model.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <memory>
 #include <string>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "core/base/stopwatch.hpp"
+#include "core/cell/mesh_to_count.hpp"
 #include "core/cell/regions_alternate.hpp"
 #include "core/plane/arcs/find_chords.hpp"
 #include "core/plane/input/discretise_arcs.hpp"
@@ -149,15 +151,20 @@ Result<plane::SymmetricPslg> symmetrise_pslg(const Pslg& pslg,
 template <class Symmetrise, class Mesh>
 Result<MeshOutcome> run(const Symmetrise& symmetrise,
                         const Mesh& mesh,
-                        bool strict,
+                        const MeshOptions& options,
                         ExecutionContext& context) {
+  const bool strict = options.strict;
   Stopwatch total, watch;
   context.report(Phase::kSymmetry, 0.02);
   auto symmetric = symmetrise();
   if (!symmetric) return error_of(symmetric);
   SYMCELL_TRY(check_strict(strict, warnings_of(*symmetric)));
   const double symmetry_ms = watch.lap();
-  Result<MeshOutcome> outcome = mesh(*symmetric);
+  Result<MeshOutcome> outcome =
+      options.target_elements == 0
+          ? mesh(*symmetric, options)
+          : mesh_to_count([&](const MeshOptions& own) { return mesh(*symmetric, own); }, options,
+                          context);
   if (!outcome) return outcome;
   Statistics& statistics = outcome->statistics;
   record(*symmetric, statistics);
@@ -171,6 +178,24 @@ Result<MeshOutcome> run(const Symmetrise& symmetrise,
   statistics.timings_ms.symmetry = symmetry_ms;
   statistics.timings_ms.total = total.lap();
   return outcome;
+}
+
+// Groups of planar sizes are layers of a drawing.
+Result<std::vector<SizeRequest>> sizes_by_marker(const Pslg& pslg, std::vector<SizeRequest> sizes) {
+  for (SizeRequest& s : sizes) {
+    if (s.kind != SizeRequest::Kind::kGroup) continue;
+    const auto name = std::find_if(pslg.marker_names.begin(), pslg.marker_names.end(),
+                                   [&](const MarkerName& n) { return n.name == s.group; });
+    if (name == pslg.marker_names.end()) {
+      return fail(ErrorCode::kBadOption,
+                  "sizes: the model names no marker \"" + s.group +
+                      "\"; give marker:M=L, or a layer of a drawing",
+                  {}, "/options/sizes");
+    }
+    s.kind = SizeRequest::Kind::kMarker;
+    s.id = name->marker;
+  }
+  return sizes;
 }
 
 // What is asked of all sectors together where the model is one of them: its axis and its fold.
@@ -202,10 +227,13 @@ Result<MeshOutcome> mesh_planar(const Pslg& pslg,
     if (symmetric) add_warnings(pslg.notes, symmetric->warnings);
     return symmetric;
   };
-  const auto mesh = [&](const plane::SymmetricPslg& symmetric) {
-    return plane::mesh_pslg(pslg, symmetric, options, context);
+  auto sizes = sizes_by_marker(pslg, options.sizes);
+  if (!sizes) return error_of(sizes);
+  const auto mesh = [&](const plane::SymmetricPslg& symmetric, MeshOptions own) {
+    own.sizes = *sizes;
+    return plane::mesh_pslg(pslg, symmetric, own, context);
   };
-  auto outcome = run(symmetrise, mesh, options.strict, context);
+  auto outcome = run(symmetrise, mesh, options, context);
   if (!outcome) return outcome;
   outcome->mesh.marker_names = pslg.marker_names;
   outcome->statistics.symmetry.antiperiodic = regions_alternate(outcome->mesh);
@@ -247,15 +275,16 @@ Result<MeshOutcome> mesh_model(const Model& model,
                             });
   }
   const MeshOptions own = of_all_sectors(options);
-  const auto mesh = [&](SymmetricSolid& solid) { return mesh_at_some_fold(solid, own, context); };
+  const auto mesh = [&](SymmetricSolid& solid, const MeshOptions& sized) {
+    return mesh_at_some_fold(solid, sized, context);
+  };
   if (const auto* plc = std::get_if<Plc>(&model)) {
     const auto symmetrise = [&] { return solid::symmetrise_plc(*plc, options, context); };
-    return run([&] { return at_its_fold(symmetrise(), options, context); }, mesh, options.strict,
-               context);
+    return run([&] { return at_its_fold(symmetrise(), options, context); }, mesh, options, context);
   }
   const auto& surface = std::get<TriangleSurface>(model);
   const auto symmetrise = [&] { return solid::symmetrise_surface(surface, own, context); };
-  return run([&] { return at_its_fold(symmetrise(), own, context); }, mesh, own.strict, context);
+  return run([&] { return at_its_fold(symmetrise(), own, context); }, mesh, own, context);
 }
 
 Result<Inspection> inspect_model(const Model& model,

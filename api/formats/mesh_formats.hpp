@@ -1,6 +1,11 @@
 // The writers behind write_mesh, one a format. All stream: memory is O(cell).
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
 #include "api/formats/byte_writer.hpp"
 #include "api/formats/mesh_stream.hpp"
 
@@ -12,8 +17,18 @@ void write_json_mesh(MeshStream& mesh, ByteWriter& out);
 // The same with arrays in base64.  Requires: `reals` is not kNone.
 void write_packed_json(MeshStream& mesh, PackedReals reals, ByteWriter& out);
 
-// VTK XML UnstructuredGrid; types 5 and 22 (10 and 24 for solids).
-void write_vtu(MeshStream& mesh, VtuEncoding encoding, ByteWriter& out);
+// Values at the nodes of the full mesh: one number (x) or a vector.
+struct NodeVectors {
+  std::string name;
+  std::uint64_t components = 3;  // 1 or 3
+  std::function<Point3(OrbitVertex)> value;
+};
+
+// VTK XML UnstructuredGrid; types 5 and 22 (10 and 24 for solids).  `fields`: further point data.
+void write_vtu(MeshStream& mesh,
+               VtuEncoding encoding,
+               ByteWriter& out,
+               std::span<const NodeVectors> fields = {});
 
 // Gmsh 4.1 ASCII: physical names, a discrete entity a region, a boundary marker and (in the cell) a
 // bound, and $Periodic from the lower to the higher bound.

@@ -42,6 +42,9 @@ class MeshStream {
   // f(std::int32_t marker)
   template <class F>
   void each_node_marker(F f) const;
+  // f(OrbitVertex copy)
+  template <class F>
+  void each_node_copy(F f) const;
   // f(std::span<const std::int64_t> nodes, std::size_t cell_element, std::int32_t sector)
   template <class F>
   void each_element(F f);
@@ -90,6 +93,20 @@ void MeshStream::each_node(F f) const {
   }
   for (std::size_t r = off_axis_; r < orbit_of_rank_.size(); ++r) {
     f(view_.position({orbit_of_rank_[r], 0}), marker_of_rank_[r]);
+  }
+}
+
+template <class F>
+void MeshStream::each_node_copy(F f) const {
+  if (!full()) {
+    for (const OrbitVertex& v : cell_->nodes) f(v);
+    return;
+  }
+  for (std::int32_t k = 0; k < cell_->fold && !stopped_(); ++k) {
+    for (std::size_t r = 0; r < off_axis_; ++r) f(OrbitVertex{orbit_of_rank_[r], k});
+  }
+  for (std::size_t r = off_axis_; r < orbit_of_rank_.size(); ++r) {
+    f(OrbitVertex{orbit_of_rank_[r], 0});
   }
 }
 

@@ -29,8 +29,19 @@ class ObjReader {
         done = read_vertex();
       } else if (keyword == "f" || keyword == "fo") {
         done = read_face();
+        for (PartNames* names : {&groups_, &materials_, &objects_}) names->follow(surface_);
+      } else if (keyword == "g") {
+        groups_.begin(lines_.rest());
+      } else if (keyword == "usemtl") {
+        materials_.begin(lines_.rest());
+      } else if (keyword == "o") {
+        objects_.begin(lines_.rest());
       }
       if (!done) return error_of(done);
+    }
+    // The finest division that the file makes, as a rule.
+    for (const PartNames* names : {&groups_, &materials_, &objects_}) {
+      if (surface_.groups.empty()) names->give_to(surface_);
     }
     return internal::finished(std::move(surface_), "OBJ");
   }
@@ -103,7 +114,10 @@ class ObjReader {
     return internal::append_face(corners, faces_++, place(), surface_);
   }
 
+  using PartNames = internal::PartNames;
+
   TextLines lines_;
+  PartNames groups_, materials_, objects_;
   bool continued_ = false;  // the line ends with a backslash
   std::size_t faces_ = 0;
   TriangleSurface surface_;

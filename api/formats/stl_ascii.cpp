@@ -12,6 +12,7 @@
 #include <string>
 
 #include "api/formats/stl.hpp"
+#include "api/formats/surface_reading.hpp"
 #include "api/formats/text_numbers.hpp"
 #include "api/printable.hpp"
 
@@ -32,12 +33,14 @@ class AsciiStlReader {
       auto done = Result<void>{};
       if (is("solid") && !in_solid) {
         in_solid = true;
+        parts_.begin(rest_.substr(0, rest_.find('\n')));
         skip_line();
       } else if (is("endsolid") && in_solid) {
         in_solid = false;
         skip_line();
       } else if (is("facet") && in_solid) {
         done = read_facet();
+        parts_.follow(surface_);
       } else {
         done = complain(ErrorCode::kSyntax, shown() + " where \"" +
                                                 (in_solid ? "facet\" or \"endsolid" : "solid") +
@@ -49,6 +52,7 @@ class AsciiStlReader {
       return complain(ErrorCode::kTruncated, "the file ends without \"endsolid\", after triangle " +
                                                  std::to_string(surface_.triangles.size()));
     }
+    parts_.give_to(surface_);
     return std::move(surface_);
   }
 
@@ -153,6 +157,7 @@ class AsciiStlReader {
   std::string_view word_;
   std::size_t line_ = 1;
   TriangleSurface surface_;
+  PartNames parts_;
 };
 
 }  // namespace

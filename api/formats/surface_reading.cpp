@@ -1,11 +1,18 @@
 #include "api/formats/surface_reading.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "api/printable.hpp"
 #include "core/model/polygon_triangles.hpp"
 
 namespace symcell::internal {
+namespace {
+
+constexpr std::size_t kLongestName = 100;  // characters
+
+}  // namespace
 
 Result<void> append_face(std::span<const std::int64_t> corners,
                          std::size_t face,
@@ -36,6 +43,36 @@ Result<void> append_face(std::span<const std::int64_t> corners,
   auto done = append_polygon(polygon, static_cast<std::int32_t>(face), surface);
   if (!done) done.error().message.insert(0, place);
   return done;
+}
+
+void PartNames::begin(std::string_view name) {
+  const std::size_t first = name.find_first_not_of(" \t\r\v\f");
+  const std::size_t last = name.find_last_not_of(" \t\r\v\f");
+  const std::string shown = first == std::string_view::npos
+                                ? std::string("unnamed")
+                                : printable(name.substr(first, last - first + 1), kLongestName);
+  const auto [place, fresh] = numbers_.try_emplace(shown, static_cast<std::int32_t>(names_.size()));
+  if (fresh) names_.push_back(shown);
+  now_ = place->second;
+}
+
+bool PartNames::several() const {
+  return std::ranges::any_of(of_triangle_,
+                             [this](std::int32_t part) { return part != of_triangle_.front(); });
+}
+
+void PartNames::give_to(TriangleSurface& surface) const {
+  if (!several()) return;
+  // Only those with triangles, in the order of the file.
+  std::vector<std::int32_t> renumbered(names_.size(), -1);
+  for (const std::int32_t part : of_triangle_) {
+    std::int32_t& number = renumbered[static_cast<std::size_t>(part)];
+    if (number < 0) {
+      number = static_cast<std::int32_t>(surface.group_names.size());
+      surface.group_names.push_back(names_[static_cast<std::size_t>(part)]);
+    }
+    surface.groups.push_back(number);
+  }
 }
 
 Result<TriangleSurface> finished(TriangleSurface surface, const char* format) {

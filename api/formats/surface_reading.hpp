@@ -2,8 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/base/error.hpp"
 #include "core/model/triangle_surface.hpp"
@@ -17,6 +21,27 @@ namespace symcell::internal {
                                        std::size_t face,
                                        const std::string& place,
                                        TriangleSurface& surface);
+
+// Names of parts of a surface, given to its triangles in the order of the file.
+class PartNames {
+ public:
+  // Triangles from now on belong to `name`, as it can be shown and written in a line.
+  void begin(std::string_view name);
+  // To be called after triangles were added.
+  void follow(const TriangleSurface& surface) {
+    of_triangle_.resize(surface.triangles.size(), now_);
+  }
+  // Whether there are two parts or more with triangles.
+  [[nodiscard]] bool several() const;
+  // Gives them to the surface, if there are several.
+  void give_to(TriangleSurface& surface) const;
+
+ private:
+  std::vector<std::string> names_{"unnamed"};
+  std::map<std::string, std::int32_t, std::less<>> numbers_{{"unnamed", 0}};
+  std::int32_t now_ = 0;
+  std::vector<std::int32_t> of_triangle_;
+};
 
 // The surface, once it is complete.  Errors: kDegenerateGeometry if it has no triangles.
 [[nodiscard]] Result<TriangleSurface> finished(TriangleSurface surface, const char* format);

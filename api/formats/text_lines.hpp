@@ -19,6 +19,9 @@ class TextLines {
   // The same, but on to further lines; empty at the end of the text.
   [[nodiscard]] std::string_view next_token_anywhere();
 
+  // What is left of the line; blanks at its end included.
+  [[nodiscard]] std::string_view rest() const { return line_; }
+
   [[nodiscard]] std::size_t number() const { return number_; }  // of the line, from 1
   [[nodiscard]] std::size_t bytes_left() const { return line_.size() + rest_.size(); }
 

@@ -170,6 +170,7 @@ class VtuReader {
 
   Result<void> read_attributes() {
     auto done = read_into("PointData", "lower_to_higher", nodes_, mesh_.lower_to_higher);
+    if (done) done = read_into("PointData", "marker", nodes_, mesh_.markers);
     if (done) done = read_into("CellData", "region", elements_, mesh_.regions);
     if (done) done = read_into("CellData", "sector", elements_, mesh_.sectors);
     if (done) done = read_into("CellData", "cell_element", elements_, mesh_.cell_elements);
@@ -187,13 +188,21 @@ class VtuReader {
   MeshData mesh_;
 };
 
-}  // namespace
+// An open file: what points into what.
+struct OpenVtu {
+  std::string head;
+  pugi::xml_document document;
+  pugi::xml_node grid;
+  std::optional<VtuArrays> arrays;
+};
 
-Result<MeshData> read_vtu(std::string_view bytes) {
+// `file`: must stay where it is.
+Result<void> open_vtu(std::string_view bytes, OpenVtu& file) {
   if (bytes.empty()) return fail(ErrorCode::kEmptyFile, "the mesh file is empty");
   // The appended section is no XML: it is cut out before parsing.
   const std::size_t cut = bytes.find("<AppendedData");
-  std::string head(bytes.substr(0, cut));
+  std::string& head = file.head;
+  head = bytes.substr(0, cut);
   std::string_view appended;
   if (cut != std::string_view::npos) {
     head += "</VTKFile>";
@@ -213,8 +222,7 @@ Result<MeshData> read_vtu(std::string_view bytes) {
     }
     appended = bytes.substr(begin + 1, end - begin - 1);
   }
-  pugi::xml_document document;
-  const pugi::xml_parse_result parsed = document.load_buffer_inplace(
+  const pugi::xml_parse_result parsed = file.document.load_buffer_inplace(
       head.data(), head.size(), pugi::parse_default, pugi::encoding_utf8);
   if (!parsed) {
     const std::string_view start = bytes.substr(0, 512);
@@ -223,14 +231,53 @@ Result<MeshData> read_vtu(std::string_view bytes) {
                 std::string("not a VTU file: ") + parsed.description() + " at byte " +
                     std::to_string(parsed.offset));
   }
-  const pugi::xml_node root = document.child("VTKFile");
+  const pugi::xml_node root = file.document.child("VTKFile");
   const pugi::xml_node grid = root.child("UnstructuredGrid");
   if (std::string_view(root.attribute("type").as_string()) != "UnstructuredGrid" || !grid) {
     return fail(ErrorCode::kUnknownFormat, "not a VTKFile of type UnstructuredGrid");
   }
-  const Result<VtuArrays> arrays = VtuArrays::open(root, appended);
+  Result<VtuArrays> arrays = VtuArrays::open(root, appended);
   if (!arrays) return error_of(arrays);
-  return VtuReader(grid, *arrays).read();
+  file.grid = grid;
+  file.arrays = std::move(*arrays);
+  return {};
+}
+
+}  // namespace
+
+Result<MeshData> read_vtu(std::string_view bytes) {
+  OpenVtu file;
+  SYMCELL_TRY(open_vtu(bytes, file));
+  return VtuReader(file.grid, *file.arrays).read();
+}
+
+Result<std::vector<Point3>> read_vtu_vectors(std::string_view bytes, const std::string& name) {
+  OpenVtu file;
+  SYMCELL_TRY(open_vtu(bytes, file));
+  const pugi::xml_node piece = file.grid.child("Piece");
+  std::string others;
+  for (const pugi::xml_node array : piece.child("PointData").children("DataArray")) {
+    const std::string own = array.attribute("Name").as_string();
+    others += (others.empty() ? "" : ", ") + printable(own);
+    if (own != name) continue;
+    if (array.attribute("NumberOfComponents").as_int(1) != 3) {
+      return fail(ErrorCode::kCountMismatch,
+                  "the array " + printable(name) + " has not three components");
+    }
+    const std::uint64_t nodes = piece.attribute("NumberOfPoints").as_ullong();
+    // No count of the file is believed beyond what its bytes can hold.
+    if (nodes > bytes.size())
+      return fail(ErrorCode::kTruncated, "more points than the file can hold");
+    const auto values = file.arrays->reals(array, 3 * nodes);
+    if (!values) return error_of(values);
+    std::vector<Point3> vectors(static_cast<std::size_t>(nodes));
+    for (std::size_t i = 0; i < vectors.size(); ++i) {
+      vectors[i] = {(*values)[3 * i], (*values)[3 * i + 1], (*values)[3 * i + 2]};
+    }
+    return vectors;
+  }
+  return fail(ErrorCode::kMissingField, "the file has no point data " + printable(name) +
+                                            (others.empty() ? "" : "; it has " + others));
 }
 
 }  // namespace symcell

@@ -3,7 +3,9 @@
 // Bears hostile input: nothing is allocated by a number in the file beyond what its bytes can hold.
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/error.hpp"
 #include "core/verify/mesh_data.hpp"
@@ -15,5 +17,10 @@ namespace symcell {
 // kMissingField, kCountMismatch, kTruncated, kTooLarge, kNonFinite, kIndexOutOfRange,
 // kUnsupportedModel (an element type other than triangles and tetrahedra).
 [[nodiscard]] Result<MeshData> read_vtu(std::string_view bytes);
+
+// Point data of three components by its name.
+// Errors: as above; kMissingField names the arrays that there are.
+[[nodiscard]] Result<std::vector<Point3>> read_vtu_vectors(std::string_view bytes,
+                                                           const std::string& name);
 
 }  // namespace symcell

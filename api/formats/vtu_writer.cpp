@@ -57,7 +57,7 @@ void add_cells(MeshStream& mesh, std::string_view type, Layout& layout) {
   }));
 }
 
-Layout lay_out(MeshStream& mesh) {
+Layout lay_out(MeshStream& mesh, std::span<const NodeVectors> fields) {
   const SymmetryCellMesh& cell = mesh.cell();
   const std::int64_t nodes = mesh.node_count();
   const std::int64_t elements = mesh.element_count();
@@ -81,6 +81,18 @@ Layout lay_out(MeshStream& mesh) {
   arrays.push_back(int32_array("marker", nodes, [&mesh](VtuValues& out) {
     mesh.each_node_marker([&](std::int32_t marker) { out.put(marker); });
   }));
+  for (const NodeVectors& field : fields) {
+    arrays.push_back(array_of<double>(field.name, "Float64", field.components, nodes,
+                                      [&mesh, &field](VtuValues& out) {
+                                        mesh.each_node_copy([&](OrbitVertex v) {
+                                          const Point3 value = field.value(v);
+                                          out.put(value.x);
+                                          if (field.components == 1) return;
+                                          out.put(value.y);
+                                          out.put(value.z);
+                                        });
+                                      }));
+  }
   layout.cell_data = arrays.size();
   arrays.push_back(int32_array("region", elements, [&mesh, &cell](VtuValues& out) {
     mesh.each_element_index([&](std::size_t e, std::int32_t s) { out.put(cell.region(e, s)); });
@@ -136,8 +148,11 @@ void write_section(const VtuEncoder& encoder,
 
 }  // namespace
 
-void write_vtu(MeshStream& mesh, VtuEncoding encoding, ByteWriter& out) {
-  Layout layout = lay_out(mesh);
+void write_vtu(MeshStream& mesh,
+               VtuEncoding encoding,
+               ByteWriter& out,
+               std::span<const NodeVectors> fields) {
+  Layout layout = lay_out(mesh, fields);
   const std::size_t count = layout.arrays.size();
   const VtuEncoder encoder(encoding, std::move(layout.arrays));
   out.text(

@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "api/printable.hpp"
+#include "api/schema/assignments.hpp"
+#include "api/schema/gates.hpp"
 
 namespace symcell::internal {
 namespace {
@@ -235,6 +237,17 @@ Result<void> set_chord_error(const OptionInfo& info,
                "a number above 0, at most 0.1 (a share of the arc's radius)");
   if (!number) return error_of(number);
   options.chord_error_rel = *number;
+  options.chord_error_given = true;
+  return {};
+}
+
+Result<void> set_feature_angle(const OptionInfo& info,
+                               const OptionValue& value,
+                               MeshOptions& options) {
+  const Result<double> number = in_range(info, value, 0, true, kMostFeatureAngleDeg,
+                                         "a number of degrees from 0 (no groups by angle) to 89");
+  if (!number) return error_of(number);
+  options.feature_angle_deg = *number;
   return {};
 }
 
@@ -319,60 +332,25 @@ Result<void> set_repair(const OptionInfo& info, const OptionValue& value, MeshOp
   return refuse(ErrorCode::kBadOption, info, value, "none, safe, all or wrap");
 }
 
-// Of a list "marker:3=0.5,vertex:17=0.02".
-struct Assignment {
-  bool at_vertex = false;  // else of a marker
-  std::int64_t id = 0;
-  double value = 0;
-};
-
-std::optional<std::vector<Assignment>> as_assignments(const OptionValue& value) {
-  if (value.kind != Kind::kText) return std::nullopt;
-  std::vector<Assignment> all;
-  std::string_view rest = value.text;
-  const auto taken = [&](std::string_view word) {
-    if (!rest.starts_with(word)) return false;
-    rest.remove_prefix(word.size());
-    return true;
-  };
-  const auto number = [&](auto& into) {
-    const auto [stop, error] = std::from_chars(rest.data(), rest.data() + rest.size(), into);
-    if (error != std::errc{}) return false;
-    rest.remove_prefix(static_cast<std::size_t>(stop - rest.data()));
-    return true;
-  };
-  do {
-    while (taken(" ")) continue;
-    Assignment next;
-    next.at_vertex = taken("vertex");
-    if (!next.at_vertex && !taken("marker")) return std::nullopt;
-    const bool read = (taken(":") || taken(" ")) && number(next.id) && taken("=") &&
-                      number(next.value) && next.value > 0 && std::isfinite(next.value);
-    if (!read) return std::nullopt;
-    all.push_back(next);
-  } while (taken(","));
-  if (!rest.empty()) return std::nullopt;
-  return all;
-}
-
 Result<void> set_sizes(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
-  const auto given = as_assignments(value);
+  const auto given = value.kind == Kind::kText ? read_assignments(value.text) : std::nullopt;
   if (!given) {
     return refuse(ErrorCode::kBadOption, info, value,
-                  "largest edge lengths of markers and vertices, as marker:3=0.5,vertex:17=0.02");
+                  "largest edge lengths of groups, markers, vertices, regions and points, as "
+                  "bore=0.2,marker:3=0.5,vertex:17=0.02,region:2=1,point:0/1.5/2=0.1");
   }
   options.sizes.clear();
   for (const Assignment& a : *given) {
-    const auto kind = a.at_vertex ? SizeRequest::Kind::kVertex : SizeRequest::Kind::kMarker;
-    options.sizes.push_back({kind, a.id, a.value});
+    options.sizes.push_back({a.kind, a.id, a.value, a.name, a.point});
   }
   return {};
 }
 
 Result<void> set_divisions(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
-  const auto given = as_assignments(value);
+  const auto given = value.kind == Kind::kText ? read_assignments(value.text) : std::nullopt;
   const auto is_division = [](const Assignment& a) {
-    return !a.at_vertex && a.value == std::floor(a.value) && a.value <= kMostDivisions;
+    return a.kind == SizeRequest::Kind::kMarker && a.value == std::floor(a.value) &&
+           a.value <= kMostDivisions;
   };
   if (!given || !std::all_of(given->begin(), given->end(), is_division)) {
     return refuse(ErrorCode::kBadOption, info, value,
@@ -382,6 +360,50 @@ Result<void> set_divisions(const OptionInfo& info, const OptionValue& value, Mes
   for (const Assignment& a : *given) {
     options.divisions.push_back({a.id, static_cast<std::int32_t>(a.value)});
   }
+  return {};
+}
+
+constexpr std::array<std::pair<std::string_view, Preset>, 3> kPresets = {
+    {{"coarse", Preset::kCoarse}, {"normal", Preset::kNormal}, {"fine", Preset::kFine}}};
+
+Result<void> set_preset(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
+  if (value.kind == Kind::kText) {
+    for (const auto& [name, preset] : kPresets) {
+      if (value.text != name) continue;
+      options.preset = preset;
+      return {};
+    }
+  }
+  return refuse(ErrorCode::kBadOption, info, value, "coarse, normal or fine");
+}
+
+Result<void> set_elements(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
+  constexpr std::uint64_t kMost = 100'000'000;
+  const std::optional<std::uint64_t> count = as_whole(value);
+  if (!count || *count < 1 || *count > kMost) {
+    return refuse(ErrorCode::kBadOption, info, value,
+                  "a whole number from 1 to " + std::to_string(kMost));
+  }
+  options.target_elements = *count;
+  return {};
+}
+
+Result<void> set_fail_on(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
+  std::vector<std::string> gates;
+  std::string_view rest = value.kind == Kind::kText ? std::string_view(value.text) : "";
+  while (true) {
+    std::string_view one = rest.substr(0, rest.find(','));
+    const bool last = one.size() == rest.size();
+    rest.remove_prefix(std::min(rest.size(), one.size() + 1));
+    if (!parse_gate(one)) {
+      return refuse(ErrorCode::kBadOption, info, value,
+                    "comparisons of figures of the statistics with numbers, such as "
+                    "cell.min_dihedral_deg<20,cell.elements>1e6");
+    }
+    gates.emplace_back(one);
+    if (last) break;
+  }
+  options.fail_on = std::move(gates);
   return {};
 }
 
@@ -413,6 +435,11 @@ Json get_symmetry_tolerance(const MeshOptions& o, ModelKind kind) {
       kind == ModelKind::kSurface ? kSurfaceSymmetryToleranceRel : kExactSymmetryToleranceRel);
 }
 
+Json get_feature_angle(const MeshOptions& o, ModelKind kind) {
+  if (kind != ModelKind::kSurface || !o.feature_angle_deg) return nullptr;
+  return *o.feature_angle_deg;
+}
+
 Json get_repair(const MeshOptions& o, ModelKind kind) {
   if (kind == ModelKind::kPlc) return nullptr;
   for (const auto& [name, repair] : kRepairs) {
@@ -426,14 +453,25 @@ Json get_memory_limit(const MeshOptions& o, ModelKind) {
 }
 
 Json get_sizes(const MeshOptions& o, ModelKind) {
-  if (o.sizes.empty()) return nullptr;
-  std::string text;
-  for (const SizeRequest& s : o.sizes) {
-    if (!text.empty()) text += ',';
-    text += s.kind == SizeRequest::Kind::kVertex ? "vertex:" : "marker:";
-    text += std::to_string(s.id) + '=' + Json(s.size).dump();
+  return o.sizes.empty() ? Json(nullptr) : Json(sizes_as_text(o.sizes));
+}
+
+Json get_preset(const MeshOptions& o, ModelKind) {
+  for (const auto& [name, preset] : kPresets) {
+    if (preset == o.preset) return name;
   }
+  return nullptr;
+}
+
+Json get_fail_on(const MeshOptions& o, ModelKind) {
+  if (o.fail_on.empty()) return nullptr;
+  std::string text;
+  for (const std::string& gate : o.fail_on) text += (text.empty() ? "" : ",") + gate;
   return text;
+}
+
+Json get_chord_error(const MeshOptions& o, ModelKind kind) {
+  return is_planar(kind) || o.chord_error_given ? Json(o.chord_error_rel) : Json(nullptr);
 }
 
 Json get_divisions(const MeshOptions& o, ModelKind) {
@@ -544,18 +582,30 @@ constexpr auto kRows = std::to_array<OptionRow>({
      [](const MeshOptions& o, ModelKind) {
        return o.min_edge > 0 ? Json(o.min_edge) : Json(nullptr);
      }},
-    {{"sizes", "marker:M=L,vertex:V=L", "",
-      "planar: longest edges on segments of a marker and at a vertex (from 0), in model units",
-      kPlanar},
+    {{"sizes", "GROUP=L,marker:M=L,vertex:V=L,region:R=L,point:X/Y/Z=L", "",
+      "longest edges on a group by name or marker, at a vertex (from 0), of solids in a region and "
+      "at a "
+      "point, in model units; at all copies of them",
+      kAll},
      set_sizes,
      get_sizes},
     {{"gradation", "G", "",
-      "planar: edges grow away from small ones by at most this factor from one to the next, 1.05 "
-      "or "
-      "more",
-      kPlanar},
+      "edges grow away from small ones by at most this factor from one to the next, 1.05 or more; "
+      "of "
+      "solids with sizes 1.5 if it is not given",
+      kAll},
      set_gradation,
      [](const MeshOptions& o, ModelKind) { return bound_to_json(o.gradation); }},
+    {{"preset", "coarse|normal|fine", "",
+      "solids: 1, 2 or 4 elements across walls, away from them as gradation allows", kSolids},
+     set_preset,
+     get_preset},
+    {{"elements", "N", "",
+      "elements of the cell that are aimed at, to within 10 %, by one longest edge for all", kAll},
+     set_elements,
+     [](const MeshOptions& o, ModelKind) {
+       return o.target_elements > 0 ? Json(o.target_elements) : Json(nullptr);
+     }},
     {{"divisions", "marker:M=N", "",
       "planar: segments of a marker have N equal parts and no other points", kPlanar},
      set_divisions,
@@ -563,10 +613,19 @@ constexpr auto kRows = std::to_array<OptionRow>({
     flag_row<&MeshOptions::keep_boundary>(
         {"keep_boundary", "", "", "planar: no new points on what bounds the domain", kPlanar}),
     {{"chord_error", "E", "1e-3",
-      "planar: how far chords may be from their arcs, as a share of the radius, above 0 to 0.1",
-      kPlanar},
+      "planar: how far chords may be from their arcs, as a share of the radius, above 0 to 0.1; "
+      "STL, "
+      "OFF, PLY, OBJ, if given: how far edges on curved faces",
+      kAll},
      set_chord_error,
-     get_member<&MeshOptions::chord_error_rel>},
+     get_chord_error},
+    {{"feature_angle", "DEG", "30, 0 where the file names parts",
+      "STL, OFF, PLY, OBJ: faces end at edges where the surface turns by so many degrees or more, "
+      "0 "
+      "to 89; each with its copies is a group, which inspect lists; 0: none",
+      kSolids},
+     set_feature_angle,
+     get_feature_angle},
     flag_row<&MeshOptions::delaunay>(
         {"delaunay", "", "", "solids: a Delaunay mesh, at worse dihedral angles", kSolids}),
     {{"order", "1|2", "1", "1: linear elements; 2: quadratic, with mid-side nodes", kAll},
@@ -589,6 +648,11 @@ constexpr auto kRows = std::to_array<OptionRow>({
          "Delaunay refinement only: no relocation, coarsening or other improvement", kAll}),
     flag_row<&MeshOptions::strict>(
         {"strict", "", "", "any warning is an error, and nothing is written", kAll}),
+    {{"fail_on", "FIGURE<X,...", "",
+      "figures of the statistics that are an error, as cell.min_dihedral_deg<20,cell.elements>1e6",
+      kAll},
+     set_fail_on,
+     get_fail_on},
 });
 
 }  // namespace

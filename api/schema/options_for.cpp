@@ -14,7 +14,7 @@ Failure not_of_kind(ModelKind kind, const std::string& name) {
       is_planar(kind)
           ? " is for solid models; planar models take min_angle, max_area, max_edge and min_edge"
           : " is for planar models; solids take radius_edge, min_dihedral, max_volume, "
-            "max_edge and min_edge";
+            "max_edge, min_edge, sizes and gradation";
   return fail(ErrorCode::kBadOption, name + message, {}, "/options/" + name);
 }
 
@@ -49,6 +49,16 @@ Result<MeshOptions> options_for_planar(MeshOptions options) {
   if (options.min_dihedral_deg != standard.min_dihedral_deg) return refuse("min_dihedral");
   if (std::isfinite(options.max_volume)) return refuse("max_volume");
   if (options.delaunay) return refuse("delaunay");
+  if (options.feature_angle_deg) return refuse("feature_angle");
+  if (options.preset != Preset::kNone) return refuse("preset");
+  for (const SizeRequest& s : options.sizes) {
+    if (s.kind != SizeRequest::Kind::kRegion && s.kind != SizeRequest::Kind::kPoint) continue;
+    return fail(
+        ErrorCode::kBadOption,
+        "sizes of planar models are of markers, their names and vertices; sizes of regions and "
+        "points are for solids (a region may have a max_area)",
+        {}, "/options/sizes");
+  }
   if (options.repair == Repair::kWrap) {
     return fail(
         ErrorCode::kBadOption,
@@ -89,10 +99,15 @@ Result<MeshOptions> options_for_solid(ModelKind kind, MeshOptions options) {
   if (kind != ModelKind::kSurface && options.repair != standard.repair) {
     return repair_is_for_surfaces();
   }
+  if (kind == ModelKind::kPlc && options.feature_angle_deg) {
+    return fail(
+        ErrorCode::kBadOption,
+        "feature_angle is for tessellated surfaces (STL, OFF, PLY, OBJ); the facets of a PLC have "
+        "their markers",
+        {}, "/options/feature_angle");
+  }
   if (options.min_angle_deg != standard.min_angle_deg) return not_of_kind(kind, "min_angle");
   if (std::isfinite(options.max_area)) return not_of_kind(kind, "max_area");
-  if (!options.sizes.empty()) return not_of_kind(kind, "sizes");
-  if (std::isfinite(options.gradation)) return not_of_kind(kind, "gradation");
   if (!options.divisions.empty()) return not_of_kind(kind, "divisions");
   if (options.keep_boundary) return not_of_kind(kind, "keep_boundary");
   if (options.sector && kind == ModelKind::kPlc) {
@@ -102,7 +117,13 @@ Result<MeshOptions> options_for_solid(ModelKind kind, MeshOptions options) {
         "STL, OFF, PLY or OBJ",
         {}, "/options/sector");
   }
-  if (options.chord_error_rel != standard.chord_error_rel) return not_of_kind(kind, "chord_error");
+  if (options.chord_error_given && kind == ModelKind::kPlc) {
+    return fail(
+        ErrorCode::kBadOption,
+        "chord_error is for arcs of planar models and for curved faces of tessellated surfaces; "
+        "the facets of a PLC are plane",
+        {}, "/options/chord_error");
+  }
   SYMCELL_TRY(check_edge_lengths(options));
   return options;
 }

@@ -1,6 +1,8 @@
 #include "api/schema/statistics_json.hpp"
 
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "api/schema/options.hpp"
 #include "api/version.hpp"
@@ -59,6 +61,31 @@ Json folds_to_json(const std::vector<FoldCandidate>& folds) {
   return json;
 }
 
+// Null: what a face of its kind has not.
+Json groups_to_json(const std::vector<FaceGroup>& groups) {
+  const auto maybe = [](const auto& value) { return value ? Json(*value) : Json(nullptr); };
+  const auto place = [](const std::optional<Point3>& p) { return p ? point(*p) : Json(nullptr); };
+  Json json = Json::array();
+  for (const FaceGroup& g : groups) {
+    json.push_back({{"marker", g.marker},
+                    {"name", g.name},
+                    {"kind", face_kind_name(g.kind)},
+                    {"faces", g.faces},
+                    {"area", number(g.area)},
+                    {"centroid", point(g.centroid)},
+                    {"point", point(g.point)},
+                    {"normal", place(g.normal)},
+                    {"axis", g.axis_origin ? Json{{"origin", point(*g.axis_origin)},
+                                                  {"direction", place(g.axis_direction)}}
+                                           : Json(nullptr)},
+                    {"radius", maybe(g.radius)},
+                    {"tube_radius", maybe(g.tube_radius)},
+                    {"half_angle_deg", maybe(g.half_angle_deg)},
+                    {"concave", g.concave}});
+  }
+  return json;
+}
+
 Json inspected(const PslgInspection& inspection) {
   Json json;
   json["type"] = "pslg";
@@ -106,6 +133,7 @@ Json inspected(const SolidInspection& inspection) {
     json["regions"] = inspection.regions;
   }
   json["repairs"] = inspection.repairs;
+  if (surface) json["groups"] = groups_to_json(inspection.groups);
   json["folds"] = folds_to_json(inspection.folds);
   json["warnings"] = warnings_to_json(inspection.warnings);
   json["problem"] = inspection.problem.empty() ? Json(nullptr) : Json(inspection.problem);
@@ -163,6 +191,11 @@ Json statistics_to_json(const Statistics& statistics, const MeshOptions& options
   json["exempt"] = Json::array();
   for (const ExemptCount& exempt : statistics.exempt) {
     json["exempt"].push_back({{"reason", exempt.reason}, {"elements", exempt.elements}});
+  }
+  if (const Statistics::Target& target = statistics.target; target.elements > 0) {
+    json["target"] = {{"elements", target.elements},
+                      {"max_edge", target.max_edge > 0 ? Json(target.max_edge) : Json(nullptr)},
+                      {"meshes", target.meshes}};
   }
   json["warnings"] = warnings_to_json(statistics.warnings);
   if (!is_planar(kind)) {

@@ -37,6 +37,7 @@ std::string_view error_code_name(ErrorCode code) {
     case ErrorCode::kStrictWarnings: return "strict_warnings";
     case ErrorCode::kTetrahedralizationFailed: return "tetrahedralization_failed";
     case ErrorCode::kBoundUnreachable: return "bound_unreachable";
+    case ErrorCode::kGateFailed: return "gate_failed";
     case ErrorCode::kElementLimit: return "element_limit";
     case ErrorCode::kTimeLimit: return "time_limit";
     case ErrorCode::kMemoryLimit: return "memory_limit";

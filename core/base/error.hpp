@@ -52,6 +52,7 @@ enum class ErrorCode : std::uint16_t {
   // Meshing.
   kBoundUnreachable = 400,
   kTetrahedralizationFailed = 401,  // no sector could be tetrahedralized
+  kGateFailed = 402,                // the option `fail_on`, and a figure of the mesh meets it
   // Limits.
   kElementLimit = 500,
   kTimeLimit = 501,

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/cell/face_group.hpp"
 #include "core/cell/warning.hpp"
 #include "core/geometry/point.hpp"
 
@@ -65,6 +66,7 @@ struct SolidInspection {
   std::size_t holes = 0;
   std::size_t regions = 0;
   std::vector<std::string> repairs;
+  std::vector<FaceGroup> groups;     // surfaces: of faces, by number
   std::vector<FoldCandidate> folds;  // the ladder, ascending
   std::vector<Warning> warnings;
   // Not empty: why a mesh of this model would be refused (open, self-intersecting, ambiguous).

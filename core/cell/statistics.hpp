@@ -70,6 +70,13 @@ struct Statistics {
 
   std::vector<ExemptCount> exempt;
 
+  // The option `elements`: the longest edge that gave the mesh (0: no bound), and meshes made for it.
+  struct Target {
+    std::uint64_t elements = 0;  // 0: not asked for
+    double max_edge = 0;
+    int meshes = 0;
+  } target;
+
   // What was changed, chosen or nearly fitted.
   std::vector<Warning> warnings;
 

@@ -44,6 +44,7 @@ std::string_view warning_code_name(WarningCode code) {
     case WarningCode::kModelRepaired: return "model_repaired";
     case WarningCode::kVerticesCopied: return "vertices_copied";
     case WarningCode::kArcsAsChords: return "arcs_as_chords";
+    case WarningCode::kElementsMissed: return "elements_missed";
     case WarningCode::kExemptElements: return "exempt_elements";
   }
   return "unknown";
@@ -174,6 +175,14 @@ std::optional<Warning> exempt_elements_warning(const std::vector<ExemptCount>& e
                      " elements are exempt from the quality bound (" + reasons + ")",
                  "blunt the model's sharp corners, relax the bound, or take a smaller fold where "
                  "the fold angle is the reason"};
+}
+
+Warning elements_missed_warning(std::uint64_t wanted, std::uint64_t found) {
+  return {WarningCode::kElementsMissed,
+          "no longest edge that was tried gives " + std::to_string(wanted) +
+              " elements to within 10 %: the cell has " + std::to_string(found),
+          found > wanted ? "take more elements, or a model with fewer small features"
+                         : "give max_edge"};
 }
 
 Result<void> check_strict(bool strict, const std::vector<Warning>& warnings) {

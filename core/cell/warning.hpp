@@ -28,6 +28,7 @@ enum class WarningCode : std::uint8_t {
   kModelRepaired,         // a planar model was mended on request
   kVerticesCopied,        // all sectors of a planar model got the vertices of all
   kArcsAsChords,          // vertices or sides of the mesh lie beside the arcs they belong to
+  kElementsMissed,        // no size gives the number of elements that was asked for
   kExemptElements,        // many elements break a bound that the input forces them to
 };
 
@@ -81,6 +82,9 @@ struct Warning {
 // Where more than 0.5 % of a cell's `elements` are exempt.
 [[nodiscard]] std::optional<Warning> exempt_elements_warning(const std::vector<ExemptCount>& exempt,
                                                              std::uint64_t elements);
+
+// `found`: elements of the cell nearest to `wanted`.
+[[nodiscard]] Warning elements_missed_warning(std::uint64_t wanted, std::uint64_t found);
 
 // What the option `strict` makes of warnings.  Errors: kStrictWarnings, which lists them, unless
 // there are none or `strict` is false.

@@ -20,6 +20,7 @@ struct TetMeasures {
   double shortest2 = 0;  // edges, squared
   double longest2 = 0;
   double volume = 0;  // signed
+  Point3 middle;      // the centroid
 
   // Circumradius / shortest edge, squared.
   [[nodiscard]] double ratio2() const { return radius2 / shortest2; }
@@ -34,10 +35,11 @@ struct TetMeasures {
                cd = squared_distance(c, d);
   TetMeasures m;
   m.volume = det / 6;
+  m.middle = 0.25 * (a + b + c + d);
   m.shortest2 = std::min({uu, vv, ww, bc, bd, cd});
   m.longest2 = std::max({uu, vv, ww, bc, bd, cd});
   if (det == 0) {
-    m.centre = 0.25 * (a + b + c + d);
+    m.centre = m.middle;
     m.radius2 = std::numeric_limits<double>::infinity();
     return m;
   }
@@ -100,6 +102,7 @@ struct LinkTet {
     if (!std::isfinite(sine)) sine = -1;
     if (!(sine > least)) return;
     measures.volume = det / 6;
+    measures.middle = p + 0.25 * (u + v + w);
     measures.shortest2 = std::min({uu, vv, ww, f.ab2, f.bc2, f.ca2});
     measures.longest2 = std::max({uu, vv, ww, f.ab2, f.bc2, f.ca2});
     const Point3 r = uu * vw + vv * wu + ww * uv;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/geometry/point.hpp"
@@ -17,6 +18,11 @@ inline constexpr std::int32_t kMaxFold = 30'000;
 
 // Chords of 52 degrees: coarser ones are no longer a picture of an arc.
 inline constexpr double kMaxChordErrorRel = 0.1;
+
+// Of tessellated surfaces: an edge at which they turn by more lies between two faces. Below 90, or the
+// sides of a box are one.
+inline constexpr double kDefaultFeatureAngleDeg = 30;
+inline constexpr double kMostFeatureAngleDeg = 89;
 
 // Edges that grow by less than this factor leave hardly any freedom to a mesh of triangles.
 inline constexpr double kLeastGradation = 1.05;
@@ -36,12 +42,18 @@ enum class Repair : std::uint8_t {
 
 // A largest edge length where it is wanted.
 struct SizeRequest {
-  enum class Kind : std::uint8_t { kMarker, kVertex };
+  enum class Kind : std::uint8_t { kMarker, kVertex, kGroup, kRegion, kPoint };
   Kind kind = Kind::kMarker;
-  std::int64_t id = 0;  // a marker: of edges on its segments; a vertex: of edges at it, from 0
-  double size = 0;      // input units
+  // A marker: of edges on its segments or facets; a vertex: of edges at it, from 0; a region's attribute.
+  std::int64_t id = 0;
+  double size = 0;         // input units
+  std::string group = {};  // a marker by its name
+  Point3 point = {};       // solids: of edges there, and at its copies
   friend bool operator==(const SizeRequest&, const SizeRequest&) = default;
 };
+
+// Elements across the smallest feature of a solid, a name for a number (core/solid/sizes).
+enum class Preset : std::uint8_t { kNone, kCoarse, kNormal, kFine };
 
 // Equal parts of the segments of a marker, on which refinement puts no more points.
 struct DivisionRequest {
@@ -62,22 +74,27 @@ struct MeshOptions {
   std::optional<Point3> axis_direction;  // solids; nullopt: detect; not the zero vector
   // Of the model's diameter (bounding-box diagonal); nullopt: the default of the kind of model.
   std::optional<double> symmetry_tolerance_rel;
-  double min_angle_deg = 30;       // planar
-  double max_area = kInfinity;     // planar; input units squared
-  double radius_edge = 1.414;      // solids: circumradius / shortest edge
-  double max_volume = kInfinity;   // solids; input units cubed
-  double min_dihedral_deg = 0;     // solids: a goal of the improvement, not a promise
-  Repair repair = Repair::kSafe;   // surfaces
-  bool delaunay = false;           // solids: end with a Delaunay mesh
-  double max_edge = kInfinity;     // input units
-  double min_edge = 0;             // input units; of edges that refinement makes
-  std::vector<SizeRequest> sizes;  // planar
-  double gradation = kInfinity;    // planar: how much longer an edge may be than the next one
+  double min_angle_deg = 30;      // planar
+  double max_area = kInfinity;    // planar; input units squared
+  double radius_edge = 1.414;     // solids: circumradius / shortest edge
+  double max_volume = kInfinity;  // solids; input units cubed
+  double min_dihedral_deg = 0;    // solids: a goal of the improvement, not a promise
+  Repair repair = Repair::kSafe;  // surfaces
+  // Surfaces: groups of faces; 0: none; nullopt: the default, or the groups that the file names.
+  std::optional<double> feature_angle_deg;
+  bool delaunay = false;        // solids: end with a Delaunay mesh
+  double max_edge = kInfinity;  // input units
+  double min_edge = 0;          // input units; of edges that refinement makes
+  std::vector<SizeRequest> sizes;
+  double gradation = kInfinity;            // how much longer an edge may be than the next one
+  Preset preset = Preset::kNone;           // solids
+  std::uint64_t target_elements = 0;       // solids: of the cell, by one size for all; 0: none
   std::vector<DivisionRequest> divisions;  // planar
   bool keep_boundary = false;              // planar: no new points on what bounds the domain
   // Planar: the model is one of that many equal sectors about the centre; nullopt: it is whole.
   std::optional<std::int32_t> sector;
-  double chord_error_rel = 1e-3;            // planar: of chords from their arcs, of the radius
+  double chord_error_rel = 1e-3;            // of chords from their arcs, of the radius
+  bool chord_error_given = false;           // solids: edges on curved groups are bounded by it
   std::int32_t order = 1;                   // 1: linear, 2: quadratic with mid-side nodes
   std::uint64_t max_elements = 50'000'000;  // of the cell
   double time_limit_s = kInfinity;
@@ -86,6 +103,9 @@ struct MeshOptions {
   // Plain Delaunay refinement only: no relocation, no coarsening. For comparison and benchmarks.
   bool plain = false;
   bool strict = false;  // warnings are errors
+  // Comparisons with figures of the statistics, "cell.min_dihedral_deg<20": a mesh that one is true of is
+  // an error. What they mean is the API's affair.
+  std::vector<std::string> fail_on;
 };
 
 }  // namespace symcell

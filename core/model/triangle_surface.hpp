@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/geometry/point.hpp"
@@ -18,6 +19,9 @@ struct TriangleSurface {
   std::vector<Point3> vertices;
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<std::int32_t> source_face;  // per triangle; empty: the triangle's own index
+  // Parts that the file names, and which of them each triangle belongs to; empty: it names none, or one.
+  std::vector<std::string> group_names;
+  std::vector<std::int32_t> groups;
 };
 
 // More than these are refused (kTooLarge): three indices a triangle stay in 32 bits.

@@ -22,6 +22,7 @@ Result<MeshOutcome> mesh_solid(const SectorSource& source,
   stats.delaunay = found->refined.delaunay;
   outcome.mesh = std::move(found->cell);
   Stopwatch watch;
+  SYMCELL_TRY(source.label_boundary(outcome.mesh, context));
   if (options.order == 2) outcome.mesh = elevate_to_quadratic(outcome.mesh);
   measure_cell_3(outcome.mesh, stats);
   stats.timings_ms.cell += watch.lap();

@@ -22,6 +22,7 @@ struct MeshData {
   std::int32_t nodes_per_element = 3;
   std::vector<std::int32_t> elements;  // indices of points, each in range
   std::vector<std::int32_t> regions;   // per element
+  std::vector<std::int32_t> markers;   // per point; empty: the file has none
 
   // Of a cell: per point, -1 where there is none. Of a full mesh: empty.
   std::vector<std::int32_t> lower_to_higher;

@@ -35,6 +35,10 @@ int run(int argc, char** argv) {
   symcell::add_keys_command(app, exit_code);
   symcell::add_worker_command(app, exit_code);
   symcell::cli::add_verify_command(app, exit_code);
+  symcell::cli::add_batch_command(app, exit_code);
+  symcell::cli::add_convert_command(app, exit_code);
+  symcell::cli::add_transfer_command(app, exit_code);
+  symcell::cli::add_completion_command(app, exit_code);
   // CLI11 would only say that a subcommand is missing.
   if (argc > 1 && argv[1][0] != '-' && !has_command(app, argv[1])) {
     std::fprintf(stderr, "symcell: there is no command \"%s\"; see symcell --help\n", argv[1]);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "api/formats/mesh_writer.hpp"
+#include "api/schema/gates.hpp"
 #include "api/schema/options.hpp"
 #include "api/schema/statistics_json.hpp"
 #include "core/base/stopwatch.hpp"
@@ -16,6 +17,8 @@
 #include "server/base/identifiers.hpp"
 #include "server/cli/atomic_output.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/mesh_outputs.hpp"
+#include "server/cli/mesh_report.hpp"
 #include "server/cli/model_input.hpp"
 #include "server/cli/option_flags.hpp"
 #include "server/cli/report_error.hpp"
@@ -34,6 +37,7 @@ Examples:
   symcell mesh gear.poly --fold 17 --min-angle 33 --max-area 0.1 --cell cell.msh
   symcell mesh part.stl --fold 8 --max-volume 2 --cell cell.vtu --full full.vtu
   symcell mesh flange.json --cell cell.inp --analysis modal --material steel --support bore
+  symcell mesh part.stl --fail-on 'cell.min_dihedral_deg<20,warnings>0' --junit mesh.xml --cell cell.msh
   symcell mesh nut.json --axis-origin 0,0,0 --axis-direction 0,0,1 --cell cell.vtu
   cat flange.json | symcell mesh - --max-edge 2 --full - --format json | jq .fold
 
@@ -43,13 +47,10 @@ Exit status: 0 done, 1 meshing failed, 2 wrong usage, 3 the model is not accepta
 
 struct MeshArguments {
   std::string model;
-  std::string cell;
-  std::string full;
+  OutputArguments meshes;
   std::string stats;
-  std::string format;
-  std::string encoding = "raw";
-  std::string packed = "false";
-  std::vector<std::pair<std::string, std::string>> deck;
+  std::string report;
+  std::string junit;
   bool json_errors = false;
   bool quiet = false;
   OptionFlags flags;
@@ -61,43 +62,6 @@ std::uint64_t peak_memory() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-Result<MeshFormat> output_format(const std::string& path, const std::string& format) {
-  std::string name = format;
-  if (name.empty() && path == "-") name = "vtu";
-  if (name.empty()) name = std::filesystem::path(path).extension().string();
-  if (const std::optional<MeshFormat> found = mesh_format_from_name(name)) return *found;
-  const std::string whose = format.empty() ? "the ending of " + path : "--format " + format;
-  return fail(ErrorCode::kBadOption,
-              whose + " names no format for meshes; take " + mesh_format_list());
-}
-
-Result<WriteOptions> write_options(const MeshArguments& arguments) {
-  WriteOptions options;
-  for (const auto& [name, value] : arguments.deck) {
-    SYMCELL_TRY(set_deck_option(options.deck, name, value));
-  }
-  const auto packed = packed_reals_from_name(arguments.packed);
-  if (!packed) {
-    return fail(ErrorCode::kBadOption,
-                "--packed must be true, exact or false, not " + arguments.packed);
-  }
-  options.packed = *packed;
-  const std::string& encoding = arguments.encoding;
-  if (encoding == "zlib") options.vtu_encoding = VtuEncoding::kAppendedZlib;
-  if (encoding == "ascii") {
-    options.vtu_encoding = VtuEncoding::kAscii;
-    options.stl_ascii = true;
-  }
-  if (encoding == "raw" || encoding == "zlib" || encoding == "ascii") return options;
-  return fail(ErrorCode::kBadOption, "--encoding must be raw, zlib or ascii, not " + encoding);
-}
-
-struct MeshOutput {
-  MeshPart part;
-  MeshFormat format;
-  AtomicOutput file;
-};
-
 // All outputs are opened before the work begins: a wrong path costs nothing.
 class MeshRun {
  public:
@@ -106,7 +70,7 @@ class MeshRun {
   Result<void> run() {
     auto done = prepare();
     if (!done) return done;
-    auto warnings = run_supervised(
+    auto made = run_supervised(
         [this](ExecutionContext& context) {
           context_ = &context;
           return mesh_and_write();
@@ -114,13 +78,19 @@ class MeshRun {
         {.time_limit_s = options_.time_limit_s,
          .memory_bytes = options_.memory_limit_bytes,
          .progress_bar = !arguments_.quiet});
-    if (!warnings) {
-      keep_fault(warnings.error());
-      return error_of(warnings);
+    if (!made) {
+      keep_fault(made.error());
+      // The error is told whether or not that can be written.
+      static_cast<void>(write_reports(make_report(made.error(), {})));
+      return error_of(made);
     }
-    done = commit();
-    if (done) report_warnings(*warnings, arguments_.json_errors);
-    return done;
+    const auto told = nlohmann::ordered_json::parse(*made, nullptr, false);
+    const MeshReport report = make_report({}, told);
+    const auto accepted = check_gates(report.gates);
+    done = commit(accepted.has_value());
+    if (done) done = write_reports(report);
+    if (done) report_warnings(report.warnings.dump(), arguments_.json_errors);
+    return done ? accepted : done;
   }
 
  private:
@@ -136,64 +106,83 @@ class MeshRun {
     if (kept) error.message += "; the model and the options are kept in " + kept->string();
   }
 
+  // `told`: what the child process returned; null if it failed.
+  [[nodiscard]] MeshReport make_report(std::optional<Error> error,
+                                       const nlohmann::ordered_json& told) {
+    MeshReport report;
+    report.model = arguments_.model;
+    report.error = std::move(error);
+    report.seconds = total_.lap() / 1000;
+    if (!told.is_object()) return report;
+    report.warnings = told.value("warnings", nlohmann::ordered_json::array());
+    report.statistics = told.value("statistics", nlohmann::ordered_json());
+    report.gates = judge(options_.fail_on, report.statistics);
+    if (const auto accepted = check_gates(report.gates); !accepted) report.error = accepted.error();
+    return report;
+  }
+
+  Result<void> write_reports(const MeshReport& report) {
+    if (report_) {
+      constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
+      const std::string text = report_to_json(report).dump(2, ' ', false, kReplace) + "\n";
+      if (!report_->sink()(text))
+        return fail(ErrorCode::kWriteFailed, "the report could not be written");
+      SYMCELL_TRY(report_->commit());
+    }
+    if (!junit_) return {};
+    if (!junit_->sink()(reports_to_junit({report}))) {
+      return fail(ErrorCode::kWriteFailed, "the JUnit file could not be written");
+    }
+    return junit_->commit();
+  }
+
   // In the child process: what it does to this object is not seen by commit(), but for the files.
-  // Returns the warnings.
+  // Returns the warnings and the statistics.
   Result<std::string> mesh_and_write() {
     auto outcome = mesh();
     if (!outcome) return error_of(outcome);
+    const auto judged =
+        judge(options_.fail_on, statistics_to_json(outcome->statistics, options_, kind_));
+    // What is not acceptable is left nowhere; its statistics are.
+    if (!check_gates(judged)) meshes_.clear();
     auto done = write(*outcome);
     // A sink that stops for a signal looks like a failed write.
     if (!done && context_->cancelled()) {
       return fail(ErrorCode::kCancelled, "cancelled while writing; no output was left");
     }
     if (!done) return error_of(done);
-    return warnings_to_json(outcome->statistics.warnings).dump();
+    nlohmann::ordered_json told;
+    told["warnings"] = warnings_to_json(outcome->statistics.warnings);
+    told["statistics"] = statistics_to_json(outcome->statistics, options_, kind_);
+    return told.dump();
   }
 
   Result<void> prepare() {
     const Result<MeshOptions> options = arguments_.flags.options();
     if (!options) return error_of(options);
     options_ = *options;
-    const Result<WriteOptions> writing = write_options(arguments_);
-    if (!writing) return error_of(writing);
-    write_options_ = *writing;
-    const std::array paths{arguments_.cell, arguments_.full, arguments_.stats};
+    const std::array paths{arguments_.meshes.cell, arguments_.meshes.full, arguments_.stats,
+                           arguments_.report, arguments_.junit};
     if (std::ranges::count(paths, std::string("-")) > 1) {
       return fail(ErrorCode::kBadOption, "only one output can go to standard output");
     }
-    for (const auto& [part, path] : {std::pair{MeshPart::kCell, arguments_.cell},
-                                     std::pair{MeshPart::kFull, arguments_.full}}) {
-      if (path.empty()) continue;
-      const Result<MeshFormat> format = output_format(path, arguments_.format);
-      if (!format) return error_of(format);
-      Result<AtomicOutput> file = AtomicOutput::open(path);
-      if (!file) return error_of(file);
-      meshes_.push_back({part, *format, std::move(*file)});
-    }
-    const bool deck = std::ranges::any_of(
-        meshes_, [](const MeshOutput& output) { return takes_deck_options(output.format); });
-    if (!deck && !arguments_.deck.empty()) {
-      return fail(ErrorCode::kBadOption,
-                  "--" + arguments_.deck.front().first +
-                      " is for a deck: give --cell or --full as .inp, .bdf or .cdb");
-    }
-    for (const MeshOutput& output : meshes_) {
-      SYMCELL_TRY(check_write_options(output.format, options_of(output.format)));
+    Result<std::vector<MeshOutput>> meshes = open_outputs(arguments_.meshes);
+    if (!meshes) return error_of(meshes);
+    meshes_ = std::move(*meshes);
+    for (const auto& [path, file] :
+         {std::pair{&arguments_.report, &report_}, {&arguments_.junit, &junit_}}) {
+      if (path->empty()) continue;
+      Result<AtomicOutput> opened = AtomicOutput::open(*path);
+      if (!opened) return error_of(opened);
+      file->emplace(std::move(*opened));
     }
     // With no output asked for, the figures are what one wants to see.
-    const bool nothing = meshes_.empty() && arguments_.stats.empty();
+    const bool nothing = meshes_.empty() && arguments_.stats.empty() && !report_ && !junit_;
     if (!nothing && arguments_.stats.empty()) return {};
     Result<AtomicOutput> file = AtomicOutput::open(nothing ? "-" : arguments_.stats);
     if (!file) return error_of(file);
     statistics_.emplace(std::move(*file));
     return {};
-  }
-
-  // What of the command line is for this format.
-  [[nodiscard]] WriteOptions options_of(MeshFormat format) const {
-    WriteOptions options = write_options_;
-    if (!takes_deck_options(format)) options.deck = {};
-    return options;
   }
 
   Result<MeshOutcome> mesh() {
@@ -216,8 +205,7 @@ class MeshRun {
     if (!outcome) return outcome;
     outcome->statistics.timings_ms.parse = parse_ms;
     for (const MeshOutput& output : meshes_) {
-      SYMCELL_TRY(
-          check_mesh_output(outcome->mesh, output.part, output.format, options_of(output.format)));
+      SYMCELL_TRY(check_mesh_output(outcome->mesh, output.part, output.format, output.options));
     }
     return outcome;
   }
@@ -231,8 +219,7 @@ class MeshRun {
       const Sink sink = [&](std::string_view piece) {
         return !context_->cancelled() && file(piece);
       };
-      auto written =
-          write_mesh(outcome.mesh, output.part, output.format, options_of(output.format), sink);
+      auto written = write_mesh(outcome.mesh, output.part, output.format, output.options, sink);
       if (!written) return written;
       (output.part == MeshPart::kFull ? timings.restore : timings.write) += watch.lap();
     }
@@ -245,8 +232,9 @@ class MeshRun {
     return fail(ErrorCode::kWriteFailed, "the statistics could not be written");
   }
 
-  Result<void> commit() {
+  Result<void> commit(bool meshes_too) {
     for (MeshOutput& output : meshes_) {
+      if (!meshes_too) break;
       SYMCELL_TRY(output.file.commit());
     }
     return statistics_ ? statistics_->commit() : Result<void>{};
@@ -256,9 +244,10 @@ class MeshRun {
   Stopwatch total_;
   MeshOptions options_;
   ModelKind kind_ = ModelKind::kPslg;  // of the model, once it is read
-  WriteOptions write_options_;
   std::vector<MeshOutput> meshes_;
   std::optional<AtomicOutput> statistics_;
+  std::optional<AtomicOutput> report_;
+  std::optional<AtomicOutput> junit_;
   ExecutionContext* context_ = nullptr;
 };
 
@@ -271,36 +260,19 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
   command->add_option("MODEL", arguments->model, "the model, planar or solid; - : standard input")
       ->required()
       ->option_text(" ");
+  add_output_flags(*command, arguments->meshes);
   const auto add = [&](const char* name, std::string& target, const std::string& help,
                        const char* value) {
     command->add_option(name, target, help)->type_name(value)->group("Output");
   };
-  add("--cell", arguments->cell, "the symmetry cell; - : standard output", "FILE");
-  add("--full", arguments->full, "the full mesh, all n sectors", "FILE");
   add("--stats", arguments->stats, "the statistics, JSON; the default if no output is named",
       "FILE");
-  add("--format", arguments->format, "of both meshes, whatever the endings: " + mesh_format_list(),
-      "NAME");
-  add("--encoding,--vtu-encoding", arguments->encoding,
-      "of VTU and VTP files [raw]; of STL ascii or not", "raw|zlib|ascii");
-  add("--packed", arguments->packed,
-      "of JSON files: arrays in base64, coordinates in 32 bits (true) or 64 (exact) [false]",
-      "true|exact|false");
-  for (const DeckOptionInfo& info : deck_option_table()) {
-    const std::string name(info.name);
-    std::string help(info.help);
-    if (!info.standard.empty()) help += " [" + std::string(info.standard) + "]";
-    command
-        ->add_option_function<std::string>(
-            "--" + name,
-            [deck = &arguments->deck, name](const std::string& value) {
-              deck->emplace_back(name, value);
-            },
-            help)
-        ->type_name(std::string(info.metavar))
-        ->multi_option_policy(CLI::MultiOptionPolicy::Throw)
-        ->group("Decks");
-  }
+  add("--report", arguments->report,
+      "JSON with status, error, warnings, gates of --fail-on and statistics; written whatever "
+      "happens",
+      "FILE");
+  add("--junit", arguments->junit, "JUnit XML: whether there is a mesh, and each gate of --fail-on",
+      "FILE");
   arguments->flags.add_to(*command);
   command->add_flag("--json-errors", arguments->json_errors,
                     "errors as problem documents, warnings as JSON, on standard error");

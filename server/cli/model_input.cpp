@@ -54,8 +54,12 @@ Result<Model> read_model_file(const std::string& path) {
   return read_model(*bytes, model_format_from_name(path));
 }
 
+Result<std::string> read_mesh_input(const std::string& path) {
+  return read_up_to(path, kMaxMeshBytes);
+}
+
 Result<MeshData> read_mesh_file(const std::string& path) {
-  const Result<std::string> bytes = read_up_to(path, kMaxMeshBytes);
+  const Result<std::string> bytes = read_mesh_input(path);
   if (!bytes) return error_of(bytes);
   auto mesh = [&]() -> Result<MeshData> {
     if (!is_gzip(*bytes)) return read_vtu(*bytes);

@@ -15,6 +15,9 @@ namespace symcell::cli {
 // A model; its format by the file's ending, else by content.
 [[nodiscard]] Result<Model> read_model_file(const std::string& path);
 
+// The same of a file of a mesh, which may be larger than a model.
+[[nodiscard]] Result<std::string> read_mesh_input(const std::string& path);
+
 // A VTU mesh, also gzip'd.
 [[nodiscard]] Result<MeshData> read_mesh_file(const std::string& path);
 

@@ -21,6 +21,10 @@ class OptionFlags {
   void add_to(CLI::App& command);
   // After parsing.  Errors: kBadOption, kBadFold, kBadAxis.
   [[nodiscard]] Result<MeshOptions> options() const;
+  // Names and values as texts, in the order of the command line; of switches the value is empty.
+  [[nodiscard]] const std::vector<std::pair<std::string, std::string>>& given() const {
+    return given_;
+  }
 
  private:
   std::vector<std::pair<std::string, std::string>> given_;

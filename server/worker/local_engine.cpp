@@ -4,6 +4,7 @@
 
 #include "api/formats/cell_archive.hpp"
 #include "api/formats/model_glb.hpp"
+#include "api/schema/gates.hpp"
 #include "api/schema/statistics_json.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/mesh_model.hpp"
@@ -48,6 +49,8 @@ Result<void> LocalEngine::run(const EngineJob& job, ExecutionContext& context) {
   auto outcome = mesh_model(*model, job.options, context);
   if (!outcome) return error_of(outcome);
 
+  SYMCELL_TRY(check_gates(judge(
+      job.options.fail_on, statistics_to_json(outcome->statistics, job.options, kind_of(*model)))));
   watch.lap();
   context.report(Phase::kWrite, 0.99, outcome->mesh.element_count());
   SYMCELL_TRY(write_cell(outcome->mesh, job.cell));

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "core/base/error.hpp"
@@ -19,6 +20,7 @@
 #include "core/guard/facet_cover.hpp"
 #include "core/solid/quotient/quotient_tetrahedralization.hpp"
 #include "core/solid/sector/sector.hpp"
+#include "core/solid/sizes/size_field.hpp"
 
 namespace symcell::solid {
 
@@ -41,6 +43,8 @@ struct InitialTetrahedralization {
   // What every mesh made from this one has to cover; see guard/facet_cover.hpp.
   FacetCover cover;
   double diameter = 0;  // of the model, about
+  // How long edges may be from place to place; null: no bounds but those for all.
+  std::shared_ptr<const SizeField> sizes;
   // Of edges in mesh.edges() that lie on the axis and on no segment.
   [[nodiscard]] std::int32_t axis_segment() const {
     return static_cast<std::int32_t>(segment_markers.size()) - 1;

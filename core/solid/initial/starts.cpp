@@ -71,6 +71,7 @@ Result<InitialTetrahedralization> Starts::next(ExecutionContext& context) {
     auto solid = tetrahedralize_sector(sector, context);
     if (solid) {
       cost_ = std::min(cost_, sector.meshing_cost);
+      solid->sizes = source_.size_field();
       return solid;
     }
     last_ = solid.error();

@@ -43,13 +43,55 @@ Criteria::Criteria(const InitialTetrahedralization& solid, const MeshOptions& op
   for (const Subdomain& s : solid.subdomains) {
     max_volumes_.push_back(std::min(options.max_volume, s.max_volume) * (1 - kBoundSafety));
   }
+  find_sizes(solid, options);
   find_sharp_segments(solid.mesh);
   find_sharp_vertices(solid.mesh, solid.tessellated);
 }
 
+void Criteria::find_sizes(const InitialTetrahedralization& solid, const MeshOptions& options) {
+  for (const SizeRequest& s : options.sizes) {
+    if (s.kind != SizeRequest::Kind::kRegion) continue;
+    region_edges2_.resize(solid.subdomains.size(), kInfinity);
+    for (std::size_t i = 0; i < solid.subdomains.size(); ++i) {
+      if (solid.subdomains[i].attribute != s.id) continue;
+      region_edges2_[i] = std::min(region_edges2_[i], s.size * s.size * (1 - kBoundSafety));
+    }
+  }
+  if (solid.sizes) sizes_.push_back(solid.sizes);
+  if (!std::isfinite(options.gradation)) return;
+  // Away from short segments, too.
+  const QuotientTetrahedralization& mesh = solid.mesh;
+  std::vector<SizeSource> sources;
+  for (TetId t = 0; t < mesh.tet_slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    for (const auto& e : kEdgeCorners) {
+      const std::int32_t segment = mesh.segment_of(mesh.corner(t, e[0]), mesh.corner(t, e[1]));
+      if (segment == kNoSegment || segment == solid.axis_segment()) continue;
+      const Point3 a = mesh.corner_point(t, e[0]), b = mesh.corner_point(t, e[1]);
+      sources.push_back({{a, b, b}, distance(a, b)});
+    }
+  }
+  sizes_.push_back(std::make_shared<const SizeField>(sources, options.gradation, mesh.fold()));
+}
+
 double Criteria::size_excess2(const TetMeasures& m, std::int32_t region) const {
   const double limit = max_volumes_[static_cast<std::size_t>(region)];
-  double worst = m.longest2 / max_edge2_;
+  double bound2 = max_edge2_;
+  if (!region_edges2_.empty()) {
+    bound2 = std::min(bound2, region_edges2_[static_cast<std::size_t>(region)]);
+  }
+  for (const auto& sizes : sizes_) {
+    const double least = sizes->least() * (1 - kBoundSafety);
+    // Most tetrahedra are smaller than any bound.
+    if (m.longest2 <= least * least || least * least >= bound2) continue;
+    // What is allowed leaves the other bounds to decide.
+    const double longest = std::sqrt(m.longest2) / (1 - kBoundSafety);
+    const double allowed = sizes->max_edge(m.middle, longest);
+    if (allowed >= longest) continue;
+    const double length = allowed * (1 - kBoundSafety);
+    bound2 = std::min(bound2, length * length);
+  }
+  double worst = m.longest2 / bound2;
   if (m.volume > limit) {
     const double length = std::cbrt(m.volume / limit);
     worst = std::max(worst, length * length);

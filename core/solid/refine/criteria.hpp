@@ -1,6 +1,7 @@
 // What makes a tetrahedron bad, and which the input itself exempts.
 //
-// Bounds: radius-edge ratio, volume (global and of the region), longest edge. Exempt from the ratio
+// Bounds: radius-edge ratio, volume (global and of the region), longest edge (global, of the region, and
+// by a size field, which is asked at the centroid). Exempt from the ratio
 // are tetrahedra with a corner on a sharp feature of the input (dihedral angle at a segment, or
 // face angle at a vertex, below kSharpDeg). Where 360/n is below 60 degrees those with a corner on
 // the axis are exempt as far as the sector forces it: from the bound B up to B / (2 sin(180/n)).
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/geometry/tet_measures.hpp"
@@ -85,6 +87,7 @@ class Criteria {
   }
 
  private:
+  void find_sizes(const InitialTetrahedralization& solid, const MeshOptions& options);
   void find_sharp_segments(const QuotientTetrahedralization& mesh);
   void find_sharp_vertices(const QuotientTetrahedralization& mesh, bool tessellated);
 
@@ -92,10 +95,12 @@ class Criteria {
   double max_edge2_;
   double min_edge_;
   bool narrow_;
-  std::vector<double> max_volumes_;           // per region
-  std::vector<std::uint8_t> sharp_segments_;  // per segment
-  std::vector<std::uint8_t> sharp_vertices_;  // per vertex of the first mesh
-  std::vector<std::uint8_t> acute_vertices_;  // likewise
+  std::vector<double> max_volumes_;    // per region
+  std::vector<double> region_edges2_;  // per region; empty: none has a bound of its own
+  std::vector<std::shared_ptr<const SizeField>> sizes_;  // from place to place
+  std::vector<std::uint8_t> sharp_segments_;             // per segment
+  std::vector<std::uint8_t> sharp_vertices_;             // per vertex of the first mesh
+  std::vector<std::uint8_t> acute_vertices_;             // likewise
 };
 
 }  // namespace symcell::solid

@@ -10,8 +10,10 @@
 
 #include "core/base/error.hpp"
 #include "core/base/execution_context.hpp"
+#include "core/cell/symmetry_cell_mesh.hpp"
 #include "core/geometry/indexed_surface.hpp"
 #include "core/solid/sector/sector.hpp"
+#include "core/solid/sizes/size_field.hpp"
 #include "core/solid/symmetry/solid_symmetry.hpp"
 
 namespace symcell::solid {
@@ -49,11 +51,21 @@ class SectorSource {
     return nullptr;
   }
 
+  // How long edges may be from place to place, in the local frame; null: no bounds but those for all.
+  [[nodiscard]] virtual std::shared_ptr<const SizeField> size_field() const { return nullptr; }
+
   // Looks at points of a finished mesh's boundary, in the local frame, with all of their copies:
   // whether each is as near to the model's surface as the tolerance says. Where a mesh keeps the
   // facets as given, which other checks see to, there is nothing to look at.
   // Errors: kInternal, limits.
   [[nodiscard]] virtual Result<void> check_boundary(std::span<const Point3> /*points*/,
+                                                    ExecutionContext& /*context*/) const {
+    return {};
+  }
+
+  // Marks a finished cell's boundary facets and nodes with groups, where the model has facets without
+  // markers of its own.  Errors: limits.
+  [[nodiscard]] virtual Result<void> label_boundary(SymmetryCellMesh& /*cell*/,
                                                     ExecutionContext& /*context*/) const {
     return {};
   }

@@ -12,9 +12,12 @@
 #include "core/geometry/spatial_order.hpp"
 #include "core/geometry/surface_distance.hpp"
 #include "core/model/describe.hpp"
+#include "core/solid/groups/label_boundary.hpp"
 #include "core/solid/sector/glue_cuts.hpp"
 #include "core/solid/sector/quotient_to_sector.hpp"
 #include "core/solid/sector/wedge_cut.hpp"
+#include "core/solid/sizes/size_sources.hpp"
+#include "core/solid/sizes/wall_sizes.hpp"
 #include "core/solid/surface/improve_surface.hpp"
 #include "core/solid/surface/narrow_corners.hpp"
 #include "core/solid/surface/planar_patches.hpp"
@@ -261,6 +264,7 @@ Result<std::unique_ptr<SectorSource>> SurfaceSectorSource::with_fold(
   other->candidates_.clear();
   other->preferred_ = 0;
   other->choose_candidates();
+  other->make_size_field();
   return other;
 }
 
@@ -421,6 +425,58 @@ Result<void> SurfaceSectorSource::check_boundary(std::span<const Point3> points,
     }
   }
   return {};
+}
+
+Result<void> SurfaceSectorSource::label_boundary(SymmetryCellMesh& cell,
+                                                 ExecutionContext& context) const {
+  return solid::label_boundary(groups_, full_, tree_, cell, context);
+}
+
+Result<void> SurfaceSectorSource::find_groups(const TriangleSurface& given,
+                                              const MeshOptions& options,
+                                              ExecutionContext& context) {
+  GroupingOptions how;
+  how.feature_angle_deg = options.feature_angle_deg;
+  how.fold = symmetry_.fold;
+  how.frame = symmetry_.frame;
+  how.reach = kMatchTolerances * tolerance_;
+  how.noise = noise_;
+  how.sector = options.sector;
+  auto found = find_face_groups(full_, tree_, given, how, context);
+  if (!found) return error_of(found);
+  groups_ = std::move(*found);
+  return {};
+}
+
+Result<void> SurfaceSectorSource::find_sizes(const TriangleSurface& given,
+                                             const MeshOptions& options,
+                                             ExecutionContext& context) {
+  SizedModel model{full_, groups_.of_triangle, {}, given.vertices, symmetry_.frame};
+  for (const FaceGroup& g : groups_.groups) model.names.push_back({g.marker, g.name});
+  auto sources = size_sources(model, options);
+  if (!sources) return error_of(sources);
+  size_sources_ = std::move(*sources);
+  const auto add = [this](const std::vector<SizeSource>& more) {
+    size_sources_.insert(size_sources_.end(), more.begin(), more.end());
+  };
+  if (options.chord_error_given) add(curvature_sources(full_, groups_, options.chord_error_rel));
+  if (options.preset != Preset::kNone) {
+    // All copies: another fold may be taken.
+    const auto walls = wall_sizes(full_, 1, elements_across(options.preset), false, context);
+    if (!walls) return error_of(walls);
+    add(*walls);
+  }
+  if (std::isfinite(options.gradation)) gradation_ = options.gradation;
+  make_size_field();
+  return {};
+}
+
+void SurfaceSectorSource::make_size_field() {
+  if (size_sources_.empty()) return;
+  // Parts that the file names may be in one sector alone.
+  const auto sources =
+      groups_.named ? size_sources_ : of_first_sector(size_sources_, symmetry_.fold);
+  sizes_ = std::make_shared<const SizeField>(sources, gradation_, symmetry_.fold);
 }
 
 Result<Sector> SurfaceSectorSource::sector(std::int32_t index, ExecutionContext& context) const {

@@ -9,6 +9,8 @@
 
 #include "core/geometry/triangle_tree.hpp"
 #include "core/guard/boundary_topology.hpp"
+#include "core/model/mesh_options.hpp"
+#include "core/solid/groups/face_groups.hpp"
 #include "core/solid/sector/sector_source.hpp"
 #include "core/solid/surface/clean_surface.hpp"
 #include "core/solid/surface/planar_patches.hpp"
@@ -51,6 +53,21 @@ class SurfaceSectorSource final : public SectorSource {
       const IndexedSurface& boundary) const override;
   [[nodiscard]] Result<void> check_boundary(std::span<const Point3> points,
                                             ExecutionContext& context) const override;
+  [[nodiscard]] Result<void> label_boundary(SymmetryCellMesh& cell,
+                                            ExecutionContext& context) const override;
+
+  // Groups of the faces, alike in all copies of the fold as it is now; those with smaller folds keep
+  // them.  `given`: the model as read.  Errors: limits.
+  [[nodiscard]] Result<void> find_groups(const TriangleSurface& given,
+                                         const MeshOptions& options,
+                                         ExecutionContext& context);
+  // What the options ask for of sizes, and the presets. After the groups.
+  // Errors: kBadOption (unknown groups), limits.
+  [[nodiscard]] Result<void> find_sizes(const TriangleSurface& given,
+                                        const MeshOptions& options,
+                                        ExecutionContext& context);
+  [[nodiscard]] std::shared_ptr<const SizeField> size_field() const override { return sizes_; }
+  [[nodiscard]] const FaceGroups& groups() const { return groups_; }
 
  private:
   struct Candidate {
@@ -78,6 +95,8 @@ class SurfaceSectorSource final : public SectorSource {
   [[nodiscard]] Result<void> check_distances(const IndexedSurface& sector,
                                              ExecutionContext& context) const;
 
+  void make_size_field();
+
   Symmetry symmetry_;
   std::vector<std::string> repairs_;
   double tolerance_;
@@ -90,6 +109,10 @@ class SurfaceSectorSource final : public SectorSource {
   BoundaryTopology topology_;    // of the input
   TriangleTree tree_;            // of the input
   std::vector<Point3> samples_;  // of the input
+  FaceGroups groups_;            // of the input
+  std::vector<SizeSource> size_sources_;
+  double gradation_ = kStandardGradation;
+  std::shared_ptr<const SizeField> sizes_;  // of the sources, at this fold
   std::vector<Candidate> candidates_;
   std::int32_t preferred_ = 0;  // of them: with the whole tolerance
 };

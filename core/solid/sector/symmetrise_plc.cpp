@@ -1,13 +1,18 @@
 // `symmetrise_plc`: a validated PLC, its symmetry, and the sectors cut from it.
+#include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/base/assert.hpp"
+#include "core/geometry/rotation.hpp"
 #include "core/solid/plc/validate_plc.hpp"
 #include "core/solid/sector/plc_sector.hpp"
 #include "core/solid/sector/symmetrise.hpp"
+#include "core/solid/sizes/size_sources.hpp"
+#include "core/solid/sizes/wall_sizes.hpp"
 #include "core/solid/symmetry/plc_symmetry.hpp"
 #include "core/solid/symmetry/symmetric_plc.hpp"
 
@@ -67,10 +72,67 @@ class PlcSource final : public SectorSource {
     plc->symmetry.warnings = plc_.symmetry.warnings;
     plc->symmetry.fold_detected = plc_.symmetry.fold_detected;
     plc->symmetry.axis_detected = plc_.symmetry.axis_detected;
-    return std::make_unique<PlcSource>(valid_, options_, std::move(*plc));
+    auto other = std::make_unique<PlcSource>(valid_, options_, std::move(*plc));
+    other->size_sources_ = size_sources_;
+    other->make_size_field();
+    return other;
+  }
+
+  [[nodiscard]] std::shared_ptr<const SizeField> size_field() const override { return sizes_; }
+
+  // What the options ask for of sizes, and the presets.  `vertices`: as given.
+  // Errors: kBadOption (a marker that no facet has); those of cutting a sector; limits.
+  Result<void> find_sizes(std::span<const Point3> vertices, ExecutionContext& context) {
+    if (options_.sizes.empty() && options_.preset == Preset::kNone) return {};
+    const auto cut = sector(0, context);
+    if (!cut) return error_of(cut);
+    std::vector<std::int32_t> markers;
+    const IndexedSurface whole = whole_of(*cut, markers);
+    auto sources = size_sources({whole, markers, {}, vertices, plc_.symmetry.frame}, options_);
+    if (!sources) return error_of(sources);
+    size_sources_ = std::move(*sources);
+    if (options_.preset != Preset::kNone) {
+      const auto walls = wall_sizes(whole, 1, elements_across(options_.preset), true, context);
+      if (!walls) return error_of(walls);
+      size_sources_.insert(size_sources_.end(), walls->begin(), walls->end());
+    }
+    make_size_field();
+    return {};
   }
 
  private:
+  // The facets of all copies, and their markers.
+  static IndexedSurface whole_of(const Sector& sector, std::vector<std::int32_t>& markers) {
+    const RotationTable rotations(sector.fold);
+    IndexedSurface whole;
+    for (std::int32_t k = 0; k < sector.fold; ++k) {
+      for (const SectorFace& f : sector.faces) {
+        Triangle t{};
+        for (std::size_t i = 0; i < 3; ++i) {
+          const OrbitVertex v = sector.vertices[static_cast<std::size_t>(f.v[i])];
+          t[i] = static_cast<std::int32_t>(whole.points.size());
+          whole.points.push_back(
+              rotations.rotate(sector.orbit_points[static_cast<std::size_t>(v.orbit)],
+                               rotations.reduce(v.exponent + k)));
+        }
+        whole.triangles.push_back(t);
+        markers.push_back(sector.facet_markers[static_cast<std::size_t>(f.facet)]);
+      }
+    }
+    return whole;
+  }
+
+  void make_size_field() {
+    if (size_sources_.empty()) return;
+    const double gradation =
+        std::isfinite(options_.gradation) ? options_.gradation : kStandardGradation;
+    const std::int32_t fold = plc_.symmetry.fold;
+    sizes_ =
+        std::make_shared<const SizeField>(of_first_sector(size_sources_, fold), gradation, fold);
+  }
+
+  std::vector<SizeSource> size_sources_;
+  std::shared_ptr<const SizeField> sizes_;
   std::shared_ptr<const ValidPlc> valid_;
   MeshOptions options_;  // as given
   SymmetricPlc plc_;
@@ -88,7 +150,9 @@ Result<std::unique_ptr<SectorSource>> symmetrise_plc(const Plc& plc,
   auto shared = std::make_shared<const ValidPlc>(std::move(*valid));
   auto symmetric = find_and_average(*shared, options, nullptr, context);
   if (!symmetric) return error_of(symmetric);
-  return std::make_unique<PlcSource>(std::move(shared), options, std::move(*symmetric));
+  auto source = std::make_unique<PlcSource>(std::move(shared), options, std::move(*symmetric));
+  SYMCELL_TRY(source->find_sizes(plc.vertices, context));
+  return source;
 }
 
 Result<SolidInspection> inspect_plc(const Plc& plc,

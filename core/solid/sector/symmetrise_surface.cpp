@@ -41,12 +41,18 @@ Result<std::unique_ptr<SectorSource>> symmetrise_surface(const TriangleSurface& 
   auto symmetry = detect_surface_symmetry(*clean, options, context);
   if (!symmetry) return error_of(symmetry);
   const double tolerance = tolerance_rel * clean->diameter;
-  return std::make_unique<SurfaceSectorSource>(std::move(*clean), symmetry->symmetry, tolerance);
+  auto source =
+      std::make_unique<SurfaceSectorSource>(std::move(*clean), symmetry->symmetry, tolerance);
+  SYMCELL_TRY(source->find_groups(surface, options, context));
+  SYMCELL_TRY(source->find_sizes(surface, options, context));
+  return source;
 }
 
 Result<SolidInspection> inspect_surface(const TriangleSurface& surface,
                                         const MeshOptions& options,
                                         ExecutionContext& context) {
+  const double tolerance_rel =
+      options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel);
   auto clean = clean_whole(surface, options, context);
   if (!clean) return error_of(clean);
   SolidInspection result;
@@ -84,6 +90,9 @@ Result<SolidInspection> inspect_surface(const TriangleSurface& surface,
   result.folds = found->folds;
   result.warnings.insert(result.warnings.begin(), symmetry.warnings.begin(),
                          symmetry.warnings.end());
+  SurfaceSectorSource source(std::move(*clean), symmetry, tolerance_rel * result.diameter);
+  SYMCELL_TRY(source.find_groups(surface, options, context));
+  result.groups = source.groups().groups;
   return result;
 }
 

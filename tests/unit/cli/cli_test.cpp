@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -230,6 +231,121 @@ TEST_F(Cli, FailedRunsLeaveOldFilesAndNoNewOnes) {
     ++files;
   }
   EXPECT_EQ(files, 3U);  // the old one, standard output and error
+}
+
+TEST_F(Cli, GatesFailTheRunAndAreReported) {
+  const std::string reports = " --report " + file("r.json") + " --junit " + file("j.xml");
+  const Outcome good =
+      symcell("mesh " + ring_ + " --fail-on 'cell.elements>1e6,warnings>0' --cell " +
+              file("c.vtu") + reports);
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  Json report = Json::parse(test::read_file(file("r.json")));
+  EXPECT_EQ(report["status"], "ok");
+  EXPECT_EQ(report["gates"].size(), 2U);
+  EXPECT_EQ(report["gates"][0]["passed"], true);
+  EXPECT_EQ(report["statistics"]["symmetry"]["fold"], 7);
+  EXPECT_NE(test::read_file(file("j.xml")).find("tests=\"3\" failures=\"0\" errors=\"0\""),
+            std::string::npos);
+
+  const Outcome bad = symcell("mesh " + ring_ + " --fail-on 'cell.elements>3' --cell " +
+                              file("d.vtu") + " --stats " + file("s.json") + reports);
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_NE(bad.err.find("code gate_failed"), std::string::npos) << bad.err;
+  EXPECT_FALSE(std::filesystem::exists(file("d.vtu")));
+  EXPECT_TRUE(Json::parse(test::read_file(file("s.json"))).contains("cell"));
+  report = Json::parse(test::read_file(file("r.json")));
+  EXPECT_EQ(report["status"], "failed");
+  EXPECT_EQ(report["error"]["code"], "gate_failed");
+  EXPECT_NE(test::read_file(file("j.xml")).find("<failure type=\"gate_failed\""),
+            std::string::npos);
+
+  const Outcome none = symcell("mesh " + ring_ + " --max-elements 3" + reports);
+  EXPECT_EQ(none.exit_code, 4);
+  report = Json::parse(test::read_file(file("r.json")));
+  EXPECT_EQ(report["status"], "error");
+  EXPECT_TRUE(report["statistics"].is_null());
+  EXPECT_NE(test::read_file(file("j.xml")).find("<error type=\"element_limit\""),
+            std::string::npos);
+  EXPECT_EQ(symcell("mesh " + ring_ + " --fail-on cell").exit_code, 2);
+}
+
+TEST_F(Cli, BatchMeshesAFolder) {
+  std::filesystem::create_directories(folder_.path() / "in/deep");
+  const std::filesystem::path in = folder_.path() / "in";
+  std::filesystem::copy_file(ring_, in / "ring.json");
+  std::filesystem::copy_file(model("p3_01_hexnut_n6.poly"), in / "deep/nut.poly");
+  std::filesystem::copy_file(model("b21_empty.json"), in / "empty.json");
+  test::write_file((in / "notes.txt").string(), "no model");
+  const std::string flags = " --out " + file("out") + " --format msh --workers 2";
+  const Outcome some = symcell("batch " + in.string() + flags + " --summary " + file("all.json") +
+                               " --junit " + file("j.xml"));
+  EXPECT_EQ(some.exit_code, 1) << some.err;
+  EXPECT_NE(some.out.find("2 models, 1 without"), std::string::npos) << some.out;
+  const Json all = Json::parse(test::read_file(file("all.json")));
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0]["model"], "empty.json");
+  EXPECT_EQ(all[0]["status"], "error");
+  EXPECT_EQ(all[0]["error"]["code"], "empty_file");
+  EXPECT_EQ(all[1]["statistics"]["symmetry"]["fold"], 7);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out/ring.json.msh"));
+  EXPECT_NE(test::read_file(file("j.xml")).find("errors=\"1\""), std::string::npos);
+
+  std::filesystem::remove(in / "empty.json");
+  const Outcome good =
+      symcell("batch " + in.string() + flags + " --recursive --full --min-dihedral 5");
+  EXPECT_EQ(good.exit_code, 1) << good.out;  // a planar model has no dihedral angles
+  const Outcome both = symcell("batch " + in.string() + flags + " --recursive --full --order 2");
+  EXPECT_EQ(both.exit_code, 0) << both.out;
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out/deep_nut.poly.full.msh"));
+  EXPECT_EQ(symcell("batch /nowhere --out " + file("out")).exit_code, 3);
+  EXPECT_EQ(symcell("batch " + in.string() + " --out " + file("out") + " --fold 0").exit_code, 2);
+}
+
+TEST_F(Cli, ConvertWritesWhatMeshWouldHave) {
+  const std::string nut = model("p3_01_hexnut_n6.poly");
+  ASSERT_EQ(
+      symcell("mesh " + nut + " --order 2 --cell " + file("c.json") + " --full " + file("f.json"))
+          .exit_code,
+      0);
+  ASSERT_EQ(
+      symcell("mesh " + nut + " --order 2 --cell " + file("c.inp") + " --full " + file("f.vtu"))
+          .exit_code,
+      0);
+  const Outcome converted = symcell("convert " + file("c.json") + " --cell " + file("d.inp") +
+                                    " --full " + file("g.vtu"));
+  ASSERT_EQ(converted.exit_code, 0) << converted.err;
+  // Places differ by a rounding.
+  const auto lines = [&](const char* name) {
+    const std::string text = test::read_file(file(name));
+    return std::ranges::count(text, '\n');
+  };
+  EXPECT_EQ(lines("d.inp"), lines("c.inp"));
+  const auto wanted = read_vtu(test::read_file(file("f.vtu")));
+  const auto found = read_vtu(test::read_file(file("g.vtu")));
+  ASSERT_TRUE(wanted && found);
+  EXPECT_EQ(found->points.size(), wanted->points.size());
+  EXPECT_EQ(found->element_count(), wanted->element_count());
+  EXPECT_EQ(symcell("verify " + file("c.vtu")).exit_code, 3);
+  ASSERT_EQ(symcell("convert " + file("c.json") + " --cell " + file("c.vtu")).exit_code, 0);
+  const Outcome verify =
+      symcell("verify " + file("c.vtu") + " --full " + file("g.vtu") + " --model " + nut);
+  EXPECT_EQ(verify.exit_code, 0) << verify.out;
+  EXPECT_EQ(symcell("convert " + file("f.json") + " --cell " + file("e.vtu")).exit_code, 3);
+  EXPECT_EQ(symcell("convert " + file("c.json")).exit_code, 2);
+  EXPECT_EQ(symcell("convert " + nut + " --cell " + file("e.vtu")).exit_code, 3);
+}
+
+TEST_F(Cli, CompletionKnowsCommandsAndFlags) {
+  for (const char* shell : {"bash", "zsh", "fish", "man"}) {
+    const Outcome script = symcell(std::string("completion ") + shell);
+    EXPECT_EQ(script.exit_code, 0) << script.err;
+    for (const char* word : {"mesh", "batch", "transfer", "symmetry"}) {
+      EXPECT_NE(script.out.find(word), std::string::npos) << shell << ": " << word;
+    }
+  }
+  const Outcome parsed = symcell("completion bash", "bash -n < /dev/null && ");
+  EXPECT_EQ(parsed.exit_code, 0);
+  EXPECT_EQ(symcell("completion tcsh").exit_code, 2);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "api/schema/gates.hpp"
+
 namespace symcell {
 namespace {
 
@@ -93,11 +95,99 @@ TEST(Options, DivisionsAndGradationsThatAreNone) {
     EXPECT_EQ(code_of(from_text("gradation", gradation)), ErrorCode::kBadOption) << gradation;
   }
   MeshOptions options;
-  options.gradation = 1.5;
-  EXPECT_EQ(code_of(options_for(ModelKind::kPlc, options)), ErrorCode::kBadOption);
-  options = {};
   options.divisions = {{1, 2}};
   EXPECT_EQ(code_of(options_for(ModelKind::kPlc, options)), ErrorCode::kBadOption);
+}
+
+TEST(Options, SizesOfSolids) {
+  const auto options = from_text(
+      "sizes",
+      "bore=0.2,marker:3=0.5,region:2=1,point:0/1.5/-2e1=0.1, group:7=3,a b=c=4,vertex:0=9");
+  ASSERT_TRUE(options) << options.error().message;
+  using Of = SizeRequest::Kind;
+  const std::vector<SizeRequest> wanted = {
+      {Of::kGroup, 0, 0.2, "bore"}, {Of::kMarker, 3, 0.5},
+      {Of::kRegion, 2, 1},          {Of::kPoint, 0, 0.1, "", {0, 1.5, -20}},
+      {Of::kGroup, 0, 3, "7"},      {Of::kGroup, 0, 4, "a b=c"},
+      {Of::kVertex, 0, 9}};
+  EXPECT_EQ(options->sizes, wanted);
+  for (const ModelKind kind : {ModelKind::kPlc, ModelKind::kSurface}) {
+    const auto fitting = options_for(kind, *options);
+    ASSERT_TRUE(fitting);
+    const auto json = options_to_json(*fitting, kind);
+    const auto back = options_from_json(Json(json));
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->sizes, wanted);
+  }
+  EXPECT_EQ(code_of(options_for(kPlanar, *options)), ErrorCode::kBadOption);
+  EXPECT_TRUE(options_for(kPlanar, *from_text("sizes", "layer 1=0.2,vertex:3=1")));
+  for (const char* bad : {"point:1/2=3", "point:1/2/3/4=3", "point:a/2/3=3", "region:x=1", "=1",
+                          "group:=1", "bore", "bore=0", "bore=-1", "bore=nan"}) {
+    EXPECT_EQ(code_of(from_text("sizes", bad)), ErrorCode::kBadOption) << bad;
+  }
+}
+
+TEST(Options, PresetsAndCounts) {
+  EXPECT_EQ(from_text("preset", "fine")->preset, Preset::kFine);
+  EXPECT_EQ(options_to_json(*from_text("preset", "fine"), ModelKind::kPlc)["preset"], "fine");
+  EXPECT_EQ(code_of(from_text("preset", "finest")), ErrorCode::kBadOption);
+  EXPECT_EQ(code_of(options_for(kPlanar, *from_text("preset", "fine"))), ErrorCode::kBadOption);
+  EXPECT_EQ(from_text("elements", "2e4")->target_elements, 20000U);
+  EXPECT_TRUE(options_for(kPlanar, *from_text("elements", "2e4")));
+  for (const char* bad : {"0", "-1", "2.5", "1e9", "many"}) {
+    EXPECT_EQ(code_of(from_text("elements", bad)), ErrorCode::kBadOption) << bad;
+  }
+}
+
+TEST(Options, FeatureAnglesAreForSurfaces) {
+  const auto angle = from_text("feature_angle", "45");
+  ASSERT_TRUE(angle);
+  EXPECT_EQ(angle->feature_angle_deg, 45);
+  EXPECT_TRUE(options_for(ModelKind::kSurface, *angle));
+  EXPECT_EQ(code_of(options_for(ModelKind::kPlc, *angle)), ErrorCode::kBadOption);
+  EXPECT_EQ(code_of(options_for(kPlanar, *angle)), ErrorCode::kBadOption);
+  EXPECT_EQ(from_text("feature_angle", "0")->feature_angle_deg, 0);
+  for (const char* bad : {"-1", "90", "nan", "sharp"}) {
+    EXPECT_EQ(code_of(from_text("feature_angle", bad)), ErrorCode::kBadOption) << bad;
+  }
+}
+
+TEST(Options, FailOnTakesComparisons) {
+  const auto gates = from_text("fail_on", "cell.min_dihedral_deg<20, cell.elements >= 1e6");
+  ASSERT_TRUE(gates);
+  EXPECT_EQ(gates->fail_on.size(), 2U);
+  EXPECT_EQ(options_to_json(*gates, kPlanar)["fail_on"],
+            "cell.min_dihedral_deg<20, cell.elements >= 1e6");
+  for (const char* bad : {"", "cell.elements", "<3", "cell.elements<", "cell.elements<many",
+                          "cell.elements=3", "a<1,", "Cell<3", "a<inf"}) {
+    EXPECT_EQ(code_of(from_text("fail_on", bad)), ErrorCode::kBadOption) << bad;
+  }
+}
+
+TEST(Gates, JudgeFiguresOfTheStatistics) {
+  const nlohmann::ordered_json statistics = {
+      {"cell", {{"elements", 120}, {"min_dihedral_deg", 17.5}}},
+      {"warnings", {1, 2}},
+      {"delaunay", false},
+      {"exempt", {{{"reason", "x"}, {"elements", 3}}}}};
+  const auto failed = [&](const char* gate) { return judge({gate}, statistics).at(0).failed; };
+  EXPECT_TRUE(failed("cell.min_dihedral_deg<20"));
+  EXPECT_FALSE(failed("cell.min_dihedral_deg<17.5"));
+  EXPECT_TRUE(failed("cell.min_dihedral_deg<=17.5"));
+  EXPECT_TRUE(failed("warnings>0"));
+  EXPECT_FALSE(failed("warnings>2"));
+  EXPECT_TRUE(failed("exempt.0.elements>=3"));
+  EXPECT_TRUE(failed("delaunay==0"));
+  EXPECT_FALSE(failed("cell.elements!=120"));
+  // What is not there is no reason to be content.
+  EXPECT_TRUE(failed("cell.elments>1e6"));
+  EXPECT_TRUE(failed("exempt.1.elements>3"));
+  EXPECT_TRUE(failed("exempt.0.reason>3"));
+  const auto checked = check_gates(judge({"cell.elements>100", "warnings>5"}, statistics));
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(checked.error().code, ErrorCode::kGateFailed);
+  EXPECT_NE(checked.error().message.find("cell.elements is 120"), std::string::npos);
+  EXPECT_EQ(checked.error().message.find("warnings"), std::string::npos);
 }
 
 TEST(Options, EdgesTooLongForTheirHalves) {
@@ -284,7 +374,7 @@ TEST(Options, ArcsArePlanarAndSectorsAnythingButPlcs) {
     EXPECT_EQ(code_of(options_for(ModelKind::kPlc, options)), ErrorCode::kBadOption);
   }
   EXPECT_TRUE(options_for(ModelKind::kSurface, *sector));
-  EXPECT_EQ(code_of(options_for(ModelKind::kSurface, *chords)), ErrorCode::kBadOption);
+  EXPECT_TRUE(options_for(ModelKind::kSurface, *chords));
   for (const char* bad : {"1", "0", "2.5", "30001", "x"}) {
     EXPECT_EQ(code_of(from_text("sector", bad)), ErrorCode::kBadFold) << bad;
   }

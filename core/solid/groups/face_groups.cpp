@@ -1,0 +1,303 @@
+#include "core/solid/groups/face_groups.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "core/base/union_find.hpp"
+#include "core/geometry/rotation.hpp"
+#include "core/solid/groups/face_regions.hpp"
+
+namespace symcell::solid {
+namespace {
+
+constexpr double kRadiansADegree = std::numbers::pi / 180;
+// A scan may have a sharp edge at every other triangle. The largest so many faces are groups.
+constexpr std::size_t kMostGroups = 400;
+// Limits are looked at every so many triangles.
+constexpr std::size_t kCheckedEach = 4096;
+// What is left is one.
+constexpr const char* kRest = "rest";
+// An axis is that of symmetry if their directions differ by less, in radians, and their distance is
+// within twice the reach of copies.
+constexpr double kSameAxis = 5e-3;
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Four digits: 12.5, 0.003.
+std::string short_number(double value) {
+  std::array<char, 32> text{};
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 4);
+  return error == std::errc{} ? std::string(text.data(), end) : std::string("0");
+}
+
+class Grouper {
+ public:
+  Grouper(const IndexedSurface& surface,
+          const TriangleTree& tree,
+          const TriangleSurface& given,
+          const GroupingOptions& options,
+          ExecutionContext& context)
+      : surface_(surface), tree_(tree), given_(given), options_(options), context_(context) {}
+
+  Result<FaceGroups> run() {
+    const bool has_names = given_.group_names.size() > 1;
+    if (has_names) {
+      SYMCELL_TRY(find_names());
+    }
+    result_.named = has_names;
+    result_.of_triangle.assign(surface_.triangles.size(), 0);
+    const double angle =
+        options_.feature_angle_deg.value_or(has_names ? 0 : kDefaultFeatureAngleDeg);
+    if (angle == 0 && !has_names) return std::move(result_);
+    FaceRegions regions;
+    if (angle == 0) {
+      regions.count = static_cast<std::int32_t>(given_.group_names.size());
+      regions.of_triangle = names_;
+    } else {
+      regions = find_face_regions(surface_, angle * kRadiansADegree, options_.noise, names_);
+    }
+    SYMCELL_TRY(context_.check());
+    pieces_ = angle == 0 ? pieces_by_name() : regions;
+    if (angle != 0) {
+      auto joined = join_copies(surface_, tree_, std::move(regions), options_.fold, options_.reach,
+                                names_, context_);
+      if (!joined) return error_of(joined);
+      regions = std::move(*joined);
+    }
+    make_groups(regions);
+    name_groups();
+    return std::move(result_);
+  }
+
+ private:
+  // What a group has beside its figures.
+  struct Draft {
+    std::int32_t region = 0;
+    double area = 0;
+    Point3 moment;  // area times centroid
+    std::vector<std::int32_t> triangles;
+  };
+
+  // Names of the file, from the nearest triangle of it. Of one sector the copies are looked up.
+  Result<void> find_names() {
+    IndexedSurface file;
+    file.triangles.reserve(given_.triangles.size());
+    for (const Point3& p : given_.vertices) file.points.push_back(options_.frame.to_local(p));
+    for (const auto& t : given_.triangles) file.triangles.push_back(t);
+    const TriangleTree tree(file.points, file.triangles);
+    const std::int32_t sectors = options_.sector.value_or(1);
+    const RotationTable rotations(sectors);
+    const std::int32_t fallback = 0;
+    names_.assign(surface_.triangles.size(), fallback);
+    std::int32_t last = -1;
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+      if (t % kCheckedEach == 0) {
+        SYMCELL_TRY(context_.check());
+      }
+      const Triangle& c = surface_.triangles[t];
+      const Point3 middle = (1.0 / 3) * (surface_.points[at(c[0])] + surface_.points[at(c[1])] +
+                                         surface_.points[at(c[2])]);
+      TriangleTree::Hit best;
+      for (std::int32_t k = 0; k < sectors; ++k) {
+        const double reach = std::isfinite(best.squared) ? std::sqrt(best.squared)
+                                                         : std::numeric_limits<double>::max();
+        const TriangleTree::Hit hit = tree.nearest(rotations.rotate(middle, k), reach, last);
+        if (hit.triangle >= 0 && hit.squared < best.squared) best = hit;
+      }
+      if (best.triangle >= 0) names_[t] = given_.groups[at(best.triangle)];
+    }
+    return {};
+  }
+
+  // Pieces that hang together within a name.
+  [[nodiscard]] FaceRegions pieces_by_name() const {
+    return find_face_regions(surface_, 2 * std::numbers::pi, options_.noise, names_);
+  }
+
+  void make_groups(const FaceRegions& regions) {
+    std::vector<Draft> drafts(at(regions.count));
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+      Draft& d = drafts[at(regions.of_triangle[t])];
+      const Triangle& c = surface_.triangles[t];
+      const double area = length(area_normal(surface_, c)) / 2;
+      d.region = regions.of_triangle[t];
+      d.area += area;
+      d.moment = d.moment + (area / 3) * (surface_.points[at(c[0])] + surface_.points[at(c[1])] +
+                                          surface_.points[at(c[2])]);
+      d.triangles.push_back(static_cast<std::int32_t>(t));
+    }
+    std::erase_if(drafts, [](const Draft& d) { return d.triangles.empty(); });
+    if (!result_.named) {
+      std::stable_sort(drafts.begin(), drafts.end(),
+                       [](const Draft& a, const Draft& b) { return a.area > b.area; });
+    }
+    if (drafts.size() > kMostGroups && !result_.named) {
+      for (std::size_t i = kMostGroups; i < drafts.size(); ++i) {
+        Draft& rest = drafts[kMostGroups - 1];
+        rest.area += drafts[i].area;
+        rest.moment = rest.moment + drafts[i].moment;
+        rest.triangles.insert(rest.triangles.end(), drafts[i].triangles.begin(),
+                              drafts[i].triangles.end());
+      }
+      drafts.resize(kMostGroups);
+      has_rest_ = true;
+    }
+    for (const Draft& d : drafts) add_group(d);
+  }
+
+  void add_group(const Draft& d) {
+    const auto number = static_cast<std::int32_t>(result_.groups.size() + 1);
+    // The largest piece stands for all.
+    std::map<std::int32_t, double> areas;
+    for (const std::int32_t t : d.triangles) {
+      result_.of_triangle[at(t)] = number;
+      areas[pieces_.of_triangle[at(t)]] += length(area_normal(surface_, surface_.triangles[at(t)]));
+    }
+    const auto largest =
+        std::max_element(areas.begin(), areas.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    std::vector<std::int32_t> own;
+    std::int32_t widest = d.triangles.front();
+    double most = -1;
+    for (const std::int32_t t : d.triangles) {
+      if (pieces_.of_triangle[at(t)] != largest->first) continue;
+      own.push_back(t);
+      const double area = length(area_normal(surface_, surface_.triangles[at(t)]));
+      if (area > most) widest = t;
+      most = std::max(most, area);
+    }
+    const bool rest = has_rest_ && at(number) == kMostGroups;
+    const ShapeFit fit = rest ? ShapeFit{} : fit_shape(surface_, own, options_.noise);
+    FaceGroup group;
+    group.marker = number;
+    group.kind = fit.kind;
+    group.faces = static_cast<std::int32_t>(areas.size());
+    group.area = d.area;
+    group.centroid = options_.frame.to_model(d.area > 0 ? (1 / d.area) * d.moment : d.moment);
+    const Triangle& c = surface_.triangles[at(widest)];
+    group.point =
+        options_.frame.to_model((1.0 / 3) * (surface_.points[at(c[0])] + surface_.points[at(c[1])] +
+                                             surface_.points[at(c[2])]));
+    describe(fit, group);
+    if (result_.named) file_name_.push_back(names_[at(d.triangles.front())]);
+    result_.fits.push_back(fit);
+    result_.groups.push_back(std::move(group));
+  }
+
+  void describe(const ShapeFit& fit, FaceGroup& group) const {
+    const auto direction = [&](Point3 d) {
+      return options_.frame.to_model(d) - options_.frame.to_model({0, 0, 0});
+    };
+    if (fit.kind == FaceKind::kSurface) return;
+    if (fit.kind == FaceKind::kPlane) {
+      group.normal = direction(fit.direction);
+      return;
+    }
+    group.concave = fit.concave;
+    group.axis_origin =
+        options_.frame.to_model(fit.kind == FaceKind::kCone ? fit.apex : fit.origin);
+    group.radius = fit.radius;
+    if (fit.kind != FaceKind::kSphere) group.axis_direction = direction(fit.direction);
+    if (fit.kind == FaceKind::kTorus) group.tube_radius = fit.tube_radius;
+    if (fit.kind == FaceKind::kCone) group.half_angle_deg = fit.half_angle / kRadiansADegree;
+  }
+
+  [[nodiscard]] bool is_on_symmetry_axis(const ShapeFit& fit) const {
+    if (options_.fold == 1 || fit.kind != FaceKind::kCylinder) return false;
+    if (std::hypot(fit.direction.x, fit.direction.y) > kSameAxis) return false;
+    const double t = -fit.origin.z / fit.direction.z;
+    const Point3 foot = fit.origin + t * fit.direction;
+    return std::hypot(foot.x, foot.y) <= 2 * options_.reach + kSameAxis * std::abs(fit.origin.z);
+  }
+
+  // What a group's name begins with; the second is true if it is counted even where it is alone.
+  [[nodiscard]] std::pair<std::string, bool> stem(std::size_t i, double widest) const {
+    const ShapeFit& fit = result_.fits[i];
+    switch (fit.kind) {
+      case FaceKind::kPlane: return {"plane", true};
+      case FaceKind::kCylinder:
+        if (is_on_symmetry_axis(fit)) {
+          if (fit.concave) return {"bore", false};
+          if (fit.radius >= widest) return {"rim", false};
+        } else if (fit.concave && fit.closes) {
+          return {"hole_r" + short_number(fit.radius), true};
+        }
+        return {"cylinder_r" + short_number(fit.radius), true};
+      case FaceKind::kCone:
+        return {"cone_" + short_number(fit.half_angle / kRadiansADegree) + "deg", true};
+      case FaceKind::kSphere: return {"sphere_r" + short_number(fit.radius), true};
+      case FaceKind::kTorus: return {"torus_r" + short_number(fit.radius), true};
+      case FaceKind::kSurface: break;
+    }
+    return {"surface", true};
+  }
+
+  // Of convex cylinders about the axis the widest is the rim.
+  [[nodiscard]] double widest_about_axis() const {
+    double widest = 0;
+    for (const ShapeFit& fit : result_.fits) {
+      if (!fit.concave && is_on_symmetry_axis(fit)) widest = std::max(widest, fit.radius);
+    }
+    constexpr double kAsWide = 1e-6;
+    return widest * (1 - kAsWide);
+  }
+
+  void name_groups() {
+    const double widest = widest_about_axis();
+    std::map<std::string, int> counts;
+    std::set<std::string> taken;
+    for (std::size_t i = 0; i < result_.groups.size(); ++i) {
+      auto [name, counted] = stem(i, widest);
+      if (has_rest_ && i + 1 == kMostGroups) {
+        name = kRest;
+        counted = false;
+      }
+      if (result_.named) {
+        const std::string& own = given_.group_names[at(file_name_[i])];
+        const bool alone = std::count(file_name_.begin(), file_name_.end(), file_name_[i]) == 1;
+        name = alone ? own : own + "_" + name;
+        counted = !alone && counted;
+      }
+      std::string full;
+      do {
+        const int count = ++counts[name];
+        full = counted || count > 1 ? name + "_" + std::to_string(count) : name;
+      } while (!taken.insert(full).second);
+      result_.groups[i].name = full;
+    }
+  }
+
+  const IndexedSurface& surface_;
+  const TriangleTree& tree_;
+  const TriangleSurface& given_;
+  const GroupingOptions& options_;
+  ExecutionContext& context_;
+  FaceGroups result_;
+  FaceRegions pieces_;
+  std::vector<std::int32_t> names_;      // per triangle of the surface; empty: the file names none
+  std::vector<std::int32_t> file_name_;  // per group
+  bool has_rest_ = false;
+};
+
+}  // namespace
+
+Result<FaceGroups> find_face_groups(const IndexedSurface& surface,
+                                    const TriangleTree& tree,
+                                    const TriangleSurface& given,
+                                    const GroupingOptions& options,
+                                    ExecutionContext& context) {
+  return Grouper(surface, tree, given, options, context).run();
+}
+
+}  // namespace symcell::solid
