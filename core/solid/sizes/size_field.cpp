@@ -11,11 +11,19 @@ namespace symcell::solid {
 namespace {
 
 constexpr std::int32_t kLeafSize = 4;  // sources: below, a look at each is quicker than a tree
-// Copies to each side of a source that may be nearest to a place in its sector: the next one, and one more
-// for sources that reach into the next sector.
-constexpr std::int32_t kCopies = 2;
 // Of a source's size.
 constexpr double kPlateau = 0.5;
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+double angle_of(Point3 p) {
+  return std::atan2(p.y, p.x);
+}
+
+// In (-pi, pi].
+double wrapped(double angle) {
+  return std::remainder(angle, kTurn);
+}
 
 Point3 centroid(const SizeSource& s) {
   return (1.0 / 3) * (s.place[0] + s.place[1] + s.place[2]);
@@ -27,15 +35,41 @@ std::size_t at(std::int32_t i) {
 
 }  // namespace
 
+SectorRange sectors_of(const SizeSource& source, std::int32_t fold) {
+  // Sides that pass the axis so near, in radians short of half a turn, pass it on either side.
+  constexpr double kHalfTurn = std::numbers::pi - 1e-6;
+  const auto n = static_cast<double>(fold);
+  const SectorRange all{0, n};
+  if (fold == 1) return all;
+  std::array<double, 3> turns{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point3 p = source.place[i];
+    if (p.x == 0 && p.y == 0) return all;
+    turns[i] = angle_of(p);
+  }
+  const double first = wrapped(turns[1] - turns[0]), second = wrapped(turns[2] - turns[1]),
+               third = wrapped(turns[0] - turns[2]);
+  // Round the axis they add up to a whole turn, else to none.
+  const bool round = std::abs(first + second + third) > 1;
+  if (round || std::max({std::abs(first), std::abs(second), std::abs(third)}) > kHalfTurn) {
+    return all;
+  }
+  const double low = std::min({0.0, first, -third}), high = std::max({0.0, first, -third});
+  return {(turns[0] + low) / kTurn * n, (turns[0] + high) / kTurn * n};
+}
+
 SizeField::SizeField(const std::vector<SizeSource>& sources, double gradation, std::int32_t fold)
     : rotations_(fold), slope_(gradation - 1) {
-  // Every place is looked up in the first sector, so all copies get the same.
-  const std::int32_t copies = std::min(fold, 2 * kCopies + 1);
+  // Every place is looked up in the first sector, so all copies get the same. Nearest to a place is a copy
+  // that is at most half a sector away from it about the axis; a whole one leaves rounding its room.
   for (const SizeSource& s : sources) {
-    const std::int32_t back = rotations_.reduce(-std::int64_t{sector_of(centroid(s))} - kCopies);
-    for (std::int32_t k = 0; k < copies; ++k) {
+    const SectorRange range = sectors_of(s, fold);
+    const auto from = static_cast<std::int64_t>(std::ceil(-1 - range.last));
+    const auto to = static_cast<std::int64_t>(std::floor(2 - range.first));
+    const std::int64_t copies = std::min<std::int64_t>(fold, to - from + 1);
+    for (std::int64_t k = from; k < from + copies; ++k) {
       SizeSource copy = s;
-      for (Point3& p : copy.place) p = rotations_.rotate(p, rotations_.add(back, k));
+      for (Point3& p : copy.place) p = rotations_.rotate(p, rotations_.reduce(k));
       sources_.push_back(copy);
     }
   }
@@ -45,7 +79,7 @@ SizeField::SizeField(const std::vector<SizeSource>& sources, double gradation, s
 std::int32_t SizeField::sector_of(Point3 p) const {
   const std::int32_t n = rotations_.fold();
   if (n == 1) return 0;
-  const double turn = std::atan2(p.y, p.x) / (2 * std::numbers::pi);
+  const double turn = angle_of(p) / kTurn;
   const double share = turn < 0 ? turn + 1 : turn;
   return std::min(n - 1, static_cast<std::int32_t>(share * n));
 }

@@ -22,6 +22,14 @@ struct SizeSource {
   double size = 0;                // input units
 };
 
+// What a source reaches over about the axis, counted in sectors from the x axis; `first` may be below 0.
+// All of them if it meets the axis.
+struct SectorRange {
+  double first = 0;
+  double last = 0;
+};
+[[nodiscard]] SectorRange sectors_of(const SizeSource& source, std::int32_t fold);
+
 class SizeField {
  public:
   // `sources`: in the local frame, of one copy each or of several.  `gradation`: by how much an edge may be

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <string>
 
@@ -149,18 +148,16 @@ Result<std::vector<SizeSource>> size_sources(const SizedModel& model, const Mesh
 }
 
 std::vector<SizeSource> of_first_sector(const std::vector<SizeSource>& sources, std::int32_t fold) {
-  // Share of a sector: what lies on its bound is taken with both sides, for copies come from rotations that
-  // round. One too many costs nothing.
+  // Share of a sector: what ends at its bound is taken, for copies come from rotations that round.
   constexpr double kSlack = 1e-6;
   std::vector<SizeSource> first;
   for (const SizeSource& s : sources) {
+    const SectorRange range = sectors_of(s, fold);
+    const auto meets = [&](double turn) {
+      return range.last + turn >= -kSlack && range.first + turn <= 1 + kSlack;
+    };
     const bool is_point = s.place[0] == s.place[1] && s.place[0] == s.place[2];
-    const Point3 middle = s.place[0] + s.place[1] + s.place[2];
-    const double sectors = std::atan2(middle.y, middle.x) / (2 * std::numbers::pi) * fold;
-    const bool in_first = sectors >= -kSlack && sectors <= 1 + kSlack;
-    // Of two sectors or one the first ends beyond the angles of atan2.
-    const bool below = sectors + fold <= 1 + kSlack;
-    if (is_point || in_first || below) first.push_back(s);
+    if (is_point || meets(0) || meets(fold) || meets(-fold)) first.push_back(s);
   }
   return first;
 }

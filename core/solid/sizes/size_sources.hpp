@@ -28,7 +28,8 @@ struct SizedModel {
 [[nodiscard]] Result<std::vector<SizeSource>> size_sources(const SizedModel& model,
                                                            const MeshOptions& options);
 
-// Of sources in all copies those in the first sector, and all points, which are in one copy.
+// Of sources that cover a face in all copies those that meet the first sector, and all points, which are
+// in one copy.
 [[nodiscard]] std::vector<SizeSource> of_first_sector(const std::vector<SizeSource>& sources,
                                                       std::int32_t fold);
 

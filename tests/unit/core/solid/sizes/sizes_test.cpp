@@ -12,6 +12,7 @@
 #include "core/geometry/triangle_tree.hpp"
 #include "core/mesh_model.hpp"
 #include "core/solid/sizes/size_field.hpp"
+#include "core/solid/sizes/size_sources.hpp"
 #include "core/solid/sizes/wall_sizes.hpp"
 #include "tests/support/plc_builders.hpp"
 #include "tests/support/surface_builders.hpp"
@@ -31,9 +32,10 @@ TEST(SizeField, IsTheSmallestThatAnyCopyAllows) {
       std::vector<SizeSource> sources;
       for (int i = 0; i < 40; ++i) {
         const Point3 a = point();
-        // Triangles no larger than a sector is wide.
+        // Some reach over many sectors, some over the axis.
+        const double reach = std::pow(10, 2 * in(random)-1);
         const auto near = [&] {
-          return a + Point3{0.1 * in(random), 0.1 * in(random), 0.1 * in(random)};
+          return a + Point3{reach * in(random), reach * in(random), reach * in(random)};
         };
         sources.push_back({{a, near(), near()}, 0.05 + 0.5 * std::abs(in(random))});
       }
@@ -50,6 +52,33 @@ TEST(SizeField, IsTheSmallestThatAnyCopyAllows) {
           }
         }
         EXPECT_NEAR(field.max_edge(p), wanted, 1e-9) << fold << ", " << gradation;
+      }
+    }
+  }
+}
+
+// A disc in triangles of its own, larger and smaller than sectors.
+TEST(SizeField, TheFirstSectorOfAFaceStandsForAll) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> in(0, 1);
+  for (const std::int32_t fold : {1, 2, 3, 8, 24}) {
+    for (const double middle : {0.0, 0.4}) {
+      std::vector<double> turns;
+      for (int i = 0; i < 9; ++i)
+        turns.push_back(2 * std::numbers::pi * (i + 0.9 * in(random)) / 9);
+      std::vector<SizeSource> sources;
+      for (std::size_t i = 0; i < turns.size(); ++i) {
+        const double a = turns[i], b = turns[(i + 1) % turns.size()];
+        sources.push_back({{Point3{middle, 0.1, 0}, Point3{std::cos(a), std::sin(a), 0},
+                            Point3{std::cos(b), std::sin(b), 0}},
+                           0.1});
+      }
+      const SizeField all(sources, 1.5, fold);
+      const SizeField one(solid::of_first_sector(sources, fold), 1.5, fold);
+      for (int i = 0; i < 200; ++i) {
+        const double r = 0.7 * in(random), turn = 7 * in(random);
+        const Point3 p{r * std::cos(turn), r * std::sin(turn), 3 * in(random)};
+        EXPECT_NEAR(one.max_edge(p), all.max_edge(p), 1e-9) << fold;
       }
     }
   }
