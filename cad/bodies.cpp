@@ -103,7 +103,7 @@ class BodyMaker {
     result_.sewn = faces;
     result_.open_edges = static_cast<std::uint32_t>(sewing.NbFreeEdges());
     follow_labels([&](const TopoDS_Shape& face, const FaceLabel& label, FaceLabels& next) {
-      const TopoDS_Shape now = sewing.Modified(face);
+      const TopoDS_Shape& now = sewing.Modified(face);
       if (!now.IsNull()) next.Bind(now, label);
     });
     open_ = sewing.SewedShape();

@@ -36,7 +36,9 @@ std::string_view name_of(CadFormat format) {
 
 // Beside the program, or where packages have it. The variable is for programs elsewhere, as tests.
 std::string find_module() {
-  if (const char* given = std::getenv("SYMCELL_CAD_MODULE"); given != nullptr) return given;
+  const char* given =
+      std::getenv("SYMCELL_CAD_MODULE");  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  if (given != nullptr) return given;
   std::array<char, PATH_MAX> path{};
   const ssize_t length = ::readlink("/proc/self/exe", path.data(), path.size());
   if (length <= 0) return {};
