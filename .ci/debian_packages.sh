@@ -6,6 +6,7 @@
 build_packages=(
   cmake g++ ninja-build pkg-config
   libcgal-dev libexpected-dev libtet1.5-dev
+  libocct-data-exchange-dev
   libdxflib-dev libpugixml-dev nlohmann-json3-dev zlib1g-dev
   libboost-dev libcli11-dev libcpp-httplib-dev libpqxx-dev libseccomp-dev libsodium-dev libspdlog-dev
   libsqlitecpp-dev libssl-dev prometheus-cpp-dev

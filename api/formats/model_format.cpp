@@ -8,7 +8,7 @@
 namespace symcell {
 namespace {
 
-constexpr std::array<ModelFormatInfo, 11> kFormats{{
+constexpr std::array<ModelFormatInfo, 13> kFormats{{
     {ModelFormat::kPslgJson, ModelKind::kPslg, "pslg_json", ".json", "application/json"},
     {ModelFormat::kPlcJson, ModelKind::kPlc, "plc_json", ".json", "application/json"},
     {ModelFormat::kPoly, ModelKind::kPslg, "poly", ".poly", "text/plain"},
@@ -20,6 +20,8 @@ constexpr std::array<ModelFormatInfo, 11> kFormats{{
     {ModelFormat::kObj, ModelKind::kSurface, "obj", ".obj", "model/obj"},
     {ModelFormat::kDxf, ModelKind::kPslg, "dxf", ".dxf", "image/vnd.dxf"},
     {ModelFormat::kFem, ModelKind::kPslg, "fem", ".fem", "text/plain"},
+    {ModelFormat::kStep, ModelKind::kSurface, "step", ".step", "model/step"},
+    {ModelFormat::kIges, ModelKind::kSurface, "iges", ".iges", "model/iges"},
 }};
 
 // What else a format may be called by those who send it.
@@ -48,6 +50,20 @@ constexpr std::array kMediaTypes{
     std::pair{"application/dxf", ModelFormat::kDxf},
     std::pair{"application/x-dxf", ModelFormat::kDxf},
     std::pair{"model/x-femm", ModelFormat::kFem},
+    std::pair{"model/step", ModelFormat::kStep},
+    std::pair{"application/step", ModelFormat::kStep},
+    std::pair{"application/x-step", ModelFormat::kStep},
+    std::pair{"application/p21", ModelFormat::kStep},
+    std::pair{"application/iso-10303-21", ModelFormat::kStep},
+    std::pair{"model/iges", ModelFormat::kIges},
+    std::pair{"application/iges", ModelFormat::kIges},
+};
+
+// Endings that are in use beside the first.
+constexpr std::array kOtherEndings{
+    std::pair{".stp", ModelFormat::kStep},
+    std::pair{".p21", ModelFormat::kStep},
+    std::pair{".igs", ModelFormat::kIges},
 };
 
 std::string lower(std::string_view text) {
@@ -74,8 +90,11 @@ std::optional<ModelFormat> model_format_from_name(std::string_view file_name) {
   // The first of the two that share an ending stands for both.
   const auto* found = std::ranges::find_if(
       kFormats, [&](const ModelFormatInfo& f) { return name.ends_with(f.ending); });
-  if (found == kFormats.end()) return std::nullopt;
-  return found->format;
+  if (found != kFormats.end()) return found->format;
+  const auto* other = std::ranges::find_if(
+      kOtherEndings, [&](const auto& ending) { return name.ends_with(ending.first); });
+  if (other == kOtherEndings.end()) return std::nullopt;
+  return other->second;
 }
 
 std::optional<ModelFormat> model_format_from_media_type(std::string_view media_type) {

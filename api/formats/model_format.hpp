@@ -20,7 +20,9 @@ enum class ModelFormat : std::uint8_t {
   kPly,
   kObj,
   kDxf,
-  kFem  // FEMM's
+  kFem,  // FEMM's
+  kStep,
+  kIges
 };
 
 struct ModelFormatInfo {

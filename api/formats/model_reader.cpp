@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "api/formats/cad.hpp"
 #include "api/formats/dxf.hpp"
 #include "api/formats/dxf_scan.hpp"
 #include "api/formats/fem.hpp"
@@ -23,7 +24,9 @@ namespace symcell {
 namespace {
 
 constexpr const char* kKnown =
-    "send JSON (a planar or a solid model), DXF, FEMM's .fem, .poly, .smesh, STL, OFF, PLY or OBJ";
+    "send JSON (a planar or a solid model), DXF, FEMM's .fem, .poly, .smesh, STEP, IGES, STL, OFF, "
+    "PLY "
+    "or OBJ";
 
 std::string lower(std::string_view text) {
   std::string result(text);
@@ -49,6 +52,8 @@ std::optional<ModelFormat> plain_format(std::string_view bytes, std::string_view
     return ModelFormat::kStl;
   }
   if (is_off_keyword(text.substr(0, text.find_first_of(" \t\r\n")))) return ModelFormat::kOff;
+  if (looks_like_step(bytes)) return ModelFormat::kStep;
+  if (looks_like_iges(bytes)) return ModelFormat::kIges;
   if (looks_like_dxf(bytes)) return ModelFormat::kDxf;
   if (looks_like_fem(bytes)) return ModelFormat::kFem;
   if (looks_like_binary_stl(bytes)) return ModelFormat::kStl;
@@ -74,11 +79,13 @@ std::optional<ModelFormat> guessed_format(std::string_view text) {
 
 // Formats that are known and not read, by how their files begin.
 constexpr std::array kNotRead{
-    std::pair{"iso-10303", "this is a STEP file; export a solid as STL, a drawing as DXF"},
+    std::pair{"iso-10303",
+              "this is a STEP file in another form than ISO 10303-21; export it as that"},
     std::pair{"ac10", "this is a DWG file; save it as an ASCII DXF from the CAD program"},
-    std::pair{"$meshformat", "this is a Gmsh mesh, not a model; export the geometry as STL or DXF"},
+    std::pair{"$meshformat",
+              "this is a Gmsh mesh, not a model; export the geometry as STEP, STL or DXF"},
     std::pair{"<svg", "this is an SVG picture; convert its paths to DXF"},
-    std::pair{"dbrep_drawable", "this is a BREP file; export a solid as STL, a drawing as DXF"},
+    std::pair{"dbrep_drawable", "this is a BREP file; export a solid as STEP, a drawing as DXF"},
     std::pair{"%pdf", "this is a PDF file; export the drawing as DXF"},
 };
 
@@ -89,8 +96,9 @@ Failure unknown_format(std::string_view text) {
     return fail(ErrorCode::kUnsupportedModel, std::string(what) + "; " + kKnown);
   }
   if (head.starts_with("pk\3\4")) {
-    return fail(ErrorCode::kUnknownFormat,
-                "this is a ZIP archive (a 3MF file is one, too); unpack it, or export as STL");
+    return fail(
+        ErrorCode::kUnknownFormat,
+        "this is a ZIP archive (a 3MF file is one, too); unpack it, or export as STEP or STL");
   }
   const char* what = head.starts_with('<') ? "this is a web page or other XML, not a model; "
                                            : "the format is not known from the first bytes; ";
@@ -103,7 +111,12 @@ Result<Model> widened(Result<Read> model) {
   return Model(std::move(*model));
 }
 
-Result<Model> read_as(ModelFormat format, std::string_view bytes) {
+Result<Model> read_as_cad(CadFormat format, std::string_view bytes, const ReadOptions& options) {
+  ExecutionContext no_limits;  // but those of the child that reads
+  return widened(read_cad(bytes, format, options.cad_chord_error_rel, no_limits));
+}
+
+Result<Model> read_as(ModelFormat format, std::string_view bytes, const ReadOptions& options) {
   switch (format) {
     case ModelFormat::kPslgJson: return widened(read_pslg_json(bytes));
     case ModelFormat::kPlcJson: return widened(read_plc_json(bytes));
@@ -116,20 +129,31 @@ Result<Model> read_as(ModelFormat format, std::string_view bytes) {
     case ModelFormat::kObj: return widened(read_obj(bytes));
     case ModelFormat::kDxf: return widened(read_dxf(bytes));
     case ModelFormat::kFem: return widened(read_fem(bytes));
+    case ModelFormat::kStep: return read_as_cad(CadFormat::kStep, bytes, options);
+    case ModelFormat::kIges: return read_as_cad(CadFormat::kIges, bytes, options);
   }
   return fail(ErrorCode::kUnknownFormat, kKnown);
 }
 
 }  // namespace
 
+ReadOptions reading_for(const MeshOptions& options) {
+  ReadOptions reading;
+  if (options.chord_error_given) {
+    reading.cad_chord_error_rel = std::min(reading.cad_chord_error_rel, options.chord_error_rel);
+  }
+  return reading;
+}
+
 Result<Model> read_model(std::string_view bytes,
                          std::optional<ModelFormat> format,
-                         ModelFormat* recognised) {
+                         ModelFormat* recognised,
+                         const ReadOptions& options) {
   if (is_gzip(bytes)) {
     const Result<std::string> text = gunzip(bytes, kMaxModelBytes);
     if (!text) return error_of(text);
     // Packed twice is no model: the reader below says so.
-    if (!is_gzip(*text)) return read_model(*text, format, recognised);
+    if (!is_gzip(*text)) return read_model(*text, format, recognised, options);
   }
   if (bytes.size() > kMaxModelBytes) {
     return fail(ErrorCode::kTooLarge, "the model has " + std::to_string(bytes.size()) +
@@ -150,10 +174,10 @@ Result<Model> read_model(std::string_view bytes,
   if (const auto dimension = poly ? poly_dimension(bytes) : std::nullopt) {
     found = *dimension == 3 ? ModelFormat::kTetgenPoly : ModelFormat::kPoly;
   }
-  auto model = read_as(*found, bytes);
+  auto model = read_as(*found, bytes, options);
   // Nothing but the sense they make distinguishes TetGen's two forms.
   if (!model && !format && *found == ModelFormat::kTetgenPoly) {
-    if (auto other = read_as(ModelFormat::kSmesh, bytes)) {
+    if (auto other = read_as(ModelFormat::kSmesh, bytes, options)) {
       found = ModelFormat::kSmesh;
       model = std::move(other);
     }

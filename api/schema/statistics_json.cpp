@@ -61,6 +61,14 @@ Json folds_to_json(const std::vector<FoldCandidate>& folds) {
   return json;
 }
 
+// "#rrggbb"
+std::string hex_colour(std::int32_t rgb) {
+  std::string text = "#000000";
+  for (std::size_t i = text.size() - 1; i > 0; --i, rgb /= 16)
+    text[i] = "0123456789abcdef"[rgb % 16];
+  return text;
+}
+
 // Null: what a face of its kind has not.
 Json groups_to_json(const std::vector<FaceGroup>& groups) {
   const auto maybe = [](const auto& value) { return value ? Json(*value) : Json(nullptr); };
@@ -82,6 +90,7 @@ Json groups_to_json(const std::vector<FaceGroup>& groups) {
                     {"tube_radius", maybe(g.tube_radius)},
                     {"half_angle_deg", maybe(g.half_angle_deg)},
                     {"concave", g.concave}});
+    if (g.colour >= 0) json.back()["color"] = hex_colour(g.colour);
   }
   return json;
 }

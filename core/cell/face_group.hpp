@@ -5,26 +5,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 
+#include "core/geometry/analytic_surface.hpp"
 #include "core/geometry/point.hpp"
 
 namespace symcell {
-
-enum class FaceKind : std::uint8_t { kPlane, kCylinder, kCone, kSphere, kTorus, kSurface };
-
-// "plane", ...; "surface": none of the others with certainty.
-[[nodiscard]] constexpr std::string_view face_kind_name(FaceKind kind) {
-  switch (kind) {
-    case FaceKind::kPlane: return "plane";
-    case FaceKind::kCylinder: return "cylinder";
-    case FaceKind::kCone: return "cone";
-    case FaceKind::kSphere: return "sphere";
-    case FaceKind::kTorus: return "torus";
-    case FaceKind::kSurface: break;
-  }
-  return "surface";
-}
 
 struct FaceGroup {
   std::int32_t marker = 0;  // its number, from 1
@@ -43,6 +28,7 @@ struct FaceGroup {
   std::optional<double> tube_radius;     // of a torus
   std::optional<double> half_angle_deg;  // of a cone
   bool concave = false;                  // the material is outside: a hole, a hollow
+  std::int32_t colour = -1;              // 0xRRGGBB, of a CAD face that has one
 };
 
 }  // namespace symcell

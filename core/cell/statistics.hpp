@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,18 @@ struct Statistics {
     double max_edge = 0;
     int meshes = 0;
   } target;
+
+  // The option `curved`: orbits of nodes and edges of a solid's boundary on its curved faces.
+  struct Curving {
+    std::uint64_t faces = 0;         // groups of a known kind
+    std::uint64_t other_faces = 0;   // groups without one, which stay as they are tessellated
+    std::uint64_t vertices = 0;      // moved onto their faces
+    std::uint64_t left = 0;          // vertices that would have folded an element there
+    std::uint64_t sides = 0;         // edges with their middle on their faces
+    std::uint64_t straightened = 0;  // edges that stay straight, or an element would fold
+    double farthest = 0;             // that a vertex was moved, input units
+  };
+  std::optional<Curving> curving;
 
   // What was changed, chosen or nearly fitted.
   std::vector<Warning> warnings;

@@ -1,10 +1,12 @@
 #include "core/cell/warning.hpp"
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 
 #include "core/cell/statistics.hpp"
 #include "core/model/describe.hpp"
+#include "core/model/triangle_surface.hpp"
 
 namespace symcell {
 namespace {
@@ -45,6 +47,9 @@ std::string_view warning_code_name(WarningCode code) {
     case WarningCode::kVerticesCopied: return "vertices_copied";
     case WarningCode::kArcsAsChords: return "arcs_as_chords";
     case WarningCode::kElementsMissed: return "elements_missed";
+    case WarningCode::kUnitsConverted: return "units_converted";
+    case WarningCode::kSolidsUnited: return "solids_united";
+    case WarningCode::kFacesAsChords: return "faces_as_chords";
     case WarningCode::kExemptElements: return "exempt_elements";
   }
   return "unknown";
@@ -130,6 +135,45 @@ Warning loops_joined_warning(std::size_t ends, double widest) {
 Warning entities_left_out_warning(const std::vector<std::string>& left_out) {
   return {WarningCode::kEntitiesLeftOut, "of the drawing was left out: " + listed(left_out, ", "),
           "explode them to lines and arcs if they belong to the model"};
+}
+
+std::vector<Warning> cad_warnings(const CadNotes& notes) {
+  std::vector<Warning> warnings;
+  std::string unit;
+  for (const char c : notes.unit) {
+    unit += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  // As STEP and IGES name it; without a name files are in millimetres, too.
+  const bool millimetres = unit.empty() || unit == "mm" || unit.starts_with("millimet");
+  if (!millimetres) {
+    warnings.push_back({WarningCode::kUnitsConverted,
+                        "the file's lengths are in " + unit +
+                            "; coordinates, sizes and results are in millimetres",
+                        "give lengths in millimetres, and forces in newtons for stresses in MPa"});
+  }
+  if (notes.solids.size() > 1) {
+    constexpr std::size_t kNamed = 8;
+    std::vector<std::string> names = notes.solids;
+    if (names.size() > kNamed) {
+      names.resize(kNamed);
+      names.emplace_back("...");
+    }
+    warnings.push_back(
+        {WarningCode::kSolidsUnited,
+         std::to_string(notes.solids.size()) + " solids (" + listed(names, ", ") +
+             ") are meshed as one material" +
+             (notes.inner_faces > 0
+                  ? ", without the " + std::to_string(notes.inner_faces) + " faces between them"
+                  : ""),
+         "export them one by one if they differ in material"});
+  }
+  if (notes.left_out > 0) {
+    warnings.push_back({WarningCode::kEntitiesLeftOut,
+                        std::to_string(notes.left_out) +
+                            " faces of the file are no part of a solid and were left out",
+                        "join them to solids in the CAD program if they belong to the part"});
+  }
+  return warnings;
 }
 
 Warning model_repaired_warning(const std::vector<std::string>& repairs) {

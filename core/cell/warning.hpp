@@ -14,6 +14,7 @@
 
 namespace symcell {
 
+struct CadNotes;
 struct ExemptCount;
 
 enum class WarningCode : std::uint8_t {
@@ -29,7 +30,10 @@ enum class WarningCode : std::uint8_t {
   kVerticesCopied,        // all sectors of a planar model got the vertices of all
   kArcsAsChords,          // vertices or sides of the mesh lie beside the arcs they belong to
   kElementsMissed,        // no size gives the number of elements that was asked for
-  kExemptElements,        // many elements break a bound that the input forces them to
+  kUnitsConverted,        // a CAD file's lengths are not in millimetres
+  kSolidsUnited,          // several solids of a CAD file are meshed as one
+  kFacesAsChords,   // vertices or sides of the mesh lie beside the curved faces they belong to
+  kExemptElements,  // many elements break a bound that the input forces them to
 };
 
 // The stable spelling used in JSON and logs.
@@ -82,6 +86,9 @@ struct Warning {
 // Where more than 0.5 % of a cell's `elements` are exempt.
 [[nodiscard]] std::optional<Warning> exempt_elements_warning(const std::vector<ExemptCount>& exempt,
                                                              std::uint64_t elements);
+
+// What is to be said of how a CAD file was read.
+[[nodiscard]] std::vector<Warning> cad_warnings(const CadNotes& notes);
 
 // `found`: elements of the cell nearest to `wanted`.
 [[nodiscard]] Warning elements_missed_warning(std::uint64_t wanted, std::uint64_t found);

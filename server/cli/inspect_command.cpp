@@ -33,7 +33,7 @@ struct InspectArguments {
 Result<std::string> inspect(const InspectArguments& arguments,
                             MeshOptions options,
                             ExecutionContext& context) {
-  const Result<Model> model = read_model_file(arguments.model);
+  const Result<Model> model = read_model_file(arguments.model, reading_for(options));
   if (!model) return error_of(model);
   const Result<MeshOptions> fitting = options_for(kind_of(*model), std::move(options));
   if (!fitting) return error_of(fitting);

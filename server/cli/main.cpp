@@ -5,6 +5,7 @@
 #include <new>
 #include <string>
 
+#include "api/formats/cad.hpp"
 #include "api/version.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/keys_command.hpp"
@@ -20,12 +21,18 @@ bool has_command(CLI::App& app, const std::string& name) {
   return !app.get_subcommands([&](const CLI::App* c) { return c->get_name() == name; }).empty();
 }
 
+std::string version_text() {
+  const std::string cad(symcell::cad_library());
+  return "symcell " + std::string(symcell::version()) +
+         (cad.empty() ? "\nSTEP and IGES: not read by this build" : "\nSTEP and IGES: " + cad);
+}
+
 int run(int argc, char** argv) {
   CLI::App app(
       "Meshes one symmetry cell of an n-fold rotationally symmetric model, planar or solid, from "
       "which the full mesh is n rotated copies.");
   app.name("symcell");
-  app.set_version_flag("--version", std::string("symcell ") + std::string(symcell::version()));
+  app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
   app.footer("symcell COMMAND --help tells more.");
   int exit_code = 0;

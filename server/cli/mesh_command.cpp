@@ -189,7 +189,7 @@ class MeshRun {
     context_->set_time_limit(options_.time_limit_s);
     context_->set_max_elements(options_.max_elements);
     Stopwatch watch;
-    const Result<Model> model = read_model_file(arguments_.model);
+    const Result<Model> model = read_model_file(arguments_.model, reading_for(options_));
     if (!model) return error_of(model);
     const double parse_ms = watch.lap();
     kind_ = kind_of(*model);

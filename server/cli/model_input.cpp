@@ -48,10 +48,10 @@ Result<std::string> read_input(const std::string& path) {
   return read_up_to(path, kMaxModelBytes);
 }
 
-Result<Model> read_model_file(const std::string& path) {
+Result<Model> read_model_file(const std::string& path, const ReadOptions& options) {
   const Result<std::string> bytes = read_input(path);
   if (!bytes) return error_of(bytes);
-  return read_model(*bytes, model_format_from_name(path));
+  return read_model(*bytes, model_format_from_name(path), nullptr, options);
 }
 
 Result<std::string> read_mesh_input(const std::string& path) {

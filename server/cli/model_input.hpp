@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "api/formats/model_reader.hpp"
 #include "core/base/error.hpp"
 #include "core/model/model.hpp"
 #include "core/verify/mesh_data.hpp"
@@ -13,7 +14,8 @@ namespace symcell::cli {
 [[nodiscard]] Result<std::string> read_input(const std::string& path);
 
 // A model; its format by the file's ending, else by content.
-[[nodiscard]] Result<Model> read_model_file(const std::string& path);
+[[nodiscard]] Result<Model> read_model_file(const std::string& path,
+                                            const ReadOptions& options = {});
 
 // The same of a file of a mesh, which may be larger than a model.
 [[nodiscard]] Result<std::string> read_mesh_input(const std::string& path);

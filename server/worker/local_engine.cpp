@@ -42,7 +42,8 @@ bool names_faces(ErrorCode code) {
 Result<void> LocalEngine::run(const EngineJob& job, ExecutionContext& context) {
   Stopwatch total, watch;
   context.report(Phase::kParse, 0);
-  const auto model = read_model(MappedFile(job.model, Links::kRefuse).bytes(), job.model_format);
+  const auto model = read_model(MappedFile(job.model, Links::kRefuse).bytes(), job.model_format,
+                                nullptr, reading_for(job.options));
   if (!model) return error_of(model);
   const double parse_ms = watch.lap();
 
@@ -80,7 +81,8 @@ Result<std::string> LocalEngine::inspect(const std::filesystem::path& path,
                                          ModelFormat format,
                                          const MeshOptions& options,
                                          ExecutionContext& context) {
-  const auto model = read_model(MappedFile(path, Links::kRefuse).bytes(), format);
+  const auto model =
+      read_model(MappedFile(path, Links::kRefuse).bytes(), format, nullptr, reading_for(options));
   if (!model) return error_of(model);
   const auto inspection = inspect_model(*model, options, context);
   if (!inspection) return error_of(inspection);
@@ -92,7 +94,8 @@ Result<void> LocalEngine::draw(const std::filesystem::path& path,
                                const MeshOptions& options,
                                const std::filesystem::path& picture,
                                ExecutionContext& context) {
-  const auto model = read_model(MappedFile(path, Links::kRefuse).bytes(), format);
+  const auto model =
+      read_model(MappedFile(path, Links::kRefuse).bytes(), format, nullptr, reading_for(options));
   if (!model) return error_of(model);
   nlohmann::ordered_json extras;
   std::vector<std::int64_t> at_fault;

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "api/formats/cad.hpp"
 #include "api/formats/dxf_scan.hpp"
 #include "api/formats/gzip.hpp"
 #include "server/base/metrics.hpp"
@@ -106,12 +107,15 @@ Result<void> WorkerEngine::run(const EngineJob& job, ExecutionContext& context) 
 // Drawings are read by a library that trusts its input; what is packed may be one.
 bool is_read_by_worker(const std::filesystem::path& model, std::optional<ModelFormat> promised) {
   if (std::filesystem::file_size(model) > kMaxBytesReadHere) return true;
-  if (promised == ModelFormat::kDxf) return true;
+  if (promised == ModelFormat::kDxf || promised == ModelFormat::kStep ||
+      promised == ModelFormat::kIges) {
+    return true;
+  }
   std::string head(kHeadBytes, '\0');
   std::ifstream file(model, std::ios::binary);
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(file.gcount()));
-  return is_gzip(head) || looks_like_dxf(head);
+  return is_gzip(head) || looks_like_dxf(head) || looks_like_step(head) || looks_like_iges(head);
 }
 
 Result<ModelFormat> WorkerEngine::recognise(const std::filesystem::path& model,

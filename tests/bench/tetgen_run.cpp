@@ -8,8 +8,8 @@
 #include <cstring>
 #include <span>
 
+#include "core/base/child_process.hpp"
 #include "core/cell/measure_cell.hpp"
-#include "core/solid/initial/child_process.hpp"
 
 namespace symcell::bench {
 namespace {
@@ -49,7 +49,7 @@ void fill(const PeerInput& input, tetgenio& in) {
   }
 }
 
-bool run_body(const PeerInput& input, std::string switches, solid::ChildOutput& output) {
+bool run_body(const PeerInput& input, std::string switches, ChildOutput& output) {
   auto* in = new tetgenio;
   auto* out = new tetgenio;
   fill(input, *in);
@@ -102,13 +102,13 @@ std::string switches_of(const char* base, PeerBounds bounds) {
 Result<PeerOutput> run_peer(const PeerInput& input, const std::string& switches) {
   ExecutionContext context;
   const auto start = std::chrono::steady_clock::now();
-  const auto child = solid::run_in_child(
-      [&](solid::ChildOutput& output) { return run_body(input, switches, output); },
-      {.cpu_seconds = kCpuSeconds}, context);
+  const auto child =
+      run_in_child([&](ChildOutput& output) { return run_body(input, switches, output); },
+                   {.cpu_seconds = kCpuSeconds}, context);
   if (!child) return error_of(child);
-  if (child->failure != solid::ChildFailure::kNone) {
+  if (child->failure != ChildFailure::kNone) {
     return fail(ErrorCode::kTetrahedralizationFailed,
-                child->failure == solid::ChildFailure::kCpuLimit ? "too long" : "crash");
+                child->failure == ChildFailure::kCpuLimit ? "too long" : "crash");
   }
   PeerOutput output;
   std::array<std::uint64_t, 3> header{};

@@ -24,7 +24,9 @@ files='filesystem>|fstream>|fcntl\.h|sys/stat|dirent'
 threads='thread>|mutex>|shared_mutex>|condition_variable>|future>|pthread|boost/thread'
 stores='SQLiteCpp|sqlite3'
 
-forbid core 'the core knows no other layer' 'api/|server/|tests/'
+forbid core 'the core knows no other layer' 'api/|server/|tests/|cad/'
+forbid cad 'the module of OpenCASCADE knows nothing but its interface' 'api/|core/|server/|tests/'
+forbid server 'files are read by the api' 'cad/'
 forbid core 'the core reads and writes nothing' "$json|$http|$logging|$files|$stores"
 forbid core 'the core starts no threads' "$threads"
 forbid core 'CGAL stays behind a few files: it costs 10 s a file that includes it' 'CGAL/' \

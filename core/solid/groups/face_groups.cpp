@@ -21,6 +21,7 @@ namespace {
 constexpr double kRadiansADegree = std::numbers::pi / 180;
 // A scan may have a sharp edge at every other triangle. The largest so many faces are groups.
 constexpr std::size_t kMostGroups = 400;
+constexpr double kWholeTurnDeg = 360;
 // Limits are looked at every so many triangles.
 constexpr std::size_t kCheckedEach = 4096;
 // What is left is one.
@@ -51,10 +52,12 @@ class Grouper {
       : surface_(surface), tree_(tree), given_(given), options_(options), context_(context) {}
 
   Result<FaceGroups> run() {
+    if (!given_.cad_faces.empty()) return run_of_cad();
     const bool has_names = given_.group_names.size() > 1;
     if (has_names) {
-      SYMCELL_TRY(find_names());
+      SYMCELL_TRY(find_names(given_.groups));
     }
+    by_name_ = has_names;
     result_.named = has_names;
     result_.of_triangle.assign(surface_.triangles.size(), 0);
     const double angle =
@@ -81,6 +84,34 @@ class Grouper {
   }
 
  private:
+  // The faces of the file; an angle divides them only where it is asked for. Copies with one name and
+  // colour are one group.
+  Result<FaceGroups> run_of_cad() {
+    result_.of_triangle.assign(surface_.triangles.size(), 0);
+    if (options_.feature_angle_deg == 0) return std::move(result_);
+    SYMCELL_TRY(find_names(given_.cad_face));
+    const double angle = options_.feature_angle_deg.value_or(kWholeTurnDeg) * kRadiansADegree;
+    FaceRegions regions = find_face_regions(surface_, angle, options_.noise, names_);
+    SYMCELL_TRY(context_.check());
+    pieces_ = regions;
+    std::map<std::pair<std::string, std::int32_t>, std::int32_t> numbers;
+    std::vector<std::int32_t> label_of_face;
+    for (const CadFace& face : given_.cad_faces) {
+      const auto next = static_cast<std::int32_t>(numbers.size());
+      label_of_face.push_back(numbers.try_emplace({face.name, face.colour}, next).first->second);
+    }
+    std::vector<std::int32_t> labels;
+    for (const std::int32_t face : names_) labels.push_back(label_of_face[at(face)]);
+    // With one label for all, copies are in one group.
+    result_.named = numbers.size() > 1;
+    auto joined = join_copies(surface_, tree_, std::move(regions), options_.fold, options_.reach,
+                              labels, context_);
+    if (!joined) return error_of(joined);
+    make_groups(*joined);
+    name_groups();
+    return std::move(result_);
+  }
+
   // What a group has beside its figures.
   struct Draft {
     std::int32_t region = 0;
@@ -90,7 +121,7 @@ class Grouper {
   };
 
   // Names of the file, from the nearest triangle of it. Of one sector the copies are looked up.
-  Result<void> find_names() {
+  Result<void> find_names(const std::vector<std::int32_t>& of_file) {
     IndexedSurface file;
     file.triangles.reserve(given_.triangles.size());
     for (const Point3& p : given_.vertices) file.points.push_back(options_.frame.to_local(p));
@@ -115,7 +146,7 @@ class Grouper {
         const TriangleTree::Hit hit = tree.nearest(rotations.rotate(middle, k), reach, last);
         if (hit.triangle >= 0 && hit.squared < best.squared) best = hit;
       }
-      if (best.triangle >= 0) names_[t] = given_.groups[at(best.triangle)];
+      if (best.triangle >= 0) names_[t] = of_file[at(best.triangle)];
     }
     return {};
   }
@@ -138,11 +169,11 @@ class Grouper {
       d.triangles.push_back(static_cast<std::int32_t>(t));
     }
     std::erase_if(drafts, [](const Draft& d) { return d.triangles.empty(); });
-    if (!result_.named) {
+    if (!by_name_) {
       std::stable_sort(drafts.begin(), drafts.end(),
                        [](const Draft& a, const Draft& b) { return a.area > b.area; });
     }
-    if (drafts.size() > kMostGroups && !result_.named) {
+    if (drafts.size() > kMostGroups && !by_name_) {
       for (std::size_t i = kMostGroups; i < drafts.size(); ++i) {
         Draft& rest = drafts[kMostGroups - 1];
         rest.area += drafts[i].area;
@@ -178,7 +209,7 @@ class Grouper {
       most = std::max(most, area);
     }
     const bool rest = has_rest_ && at(number) == kMostGroups;
-    const ShapeFit fit = rest ? ShapeFit{} : fit_shape(surface_, own, options_.noise);
+    const ShapeFit fit = rest ? ShapeFit{} : shape_of(own);
     FaceGroup group;
     group.marker = number;
     group.kind = fit.kind;
@@ -190,9 +221,29 @@ class Grouper {
         options_.frame.to_model((1.0 / 3) * (surface_.points[at(c[0])] + surface_.points[at(c[1])] +
                                              surface_.points[at(c[2])]));
     describe(fit, group);
-    if (result_.named) file_name_.push_back(names_[at(d.triangles.front())]);
+    if (by_name_) file_name_.push_back(given_.group_names[at(names_[at(d.triangles.front())])]);
+    if (!given_.cad_faces.empty()) {
+      const CadFace& face = given_.cad_faces[at(names_[at(own.front())])];
+      if (!rest) group.colour = face.colour;
+      file_name_.push_back(rest ? std::string() : face.name);
+    }
     result_.fits.push_back(fit);
     result_.groups.push_back(std::move(group));
+  }
+
+  // Of triangles of one face.
+  [[nodiscard]] ShapeFit shape_of(const std::vector<std::int32_t>& triangles) const {
+    if (!given_.cad_faces.empty()) {
+      AnalyticSurface known = given_.cad_faces[at(names_[at(triangles.front())])].surface;
+      if (known.kind != FaceKind::kSurface) {
+        const Point3 to = options_.frame.to_local(known.origin + known.direction);
+        known.origin = options_.frame.to_local(known.origin);
+        known.apex = options_.frame.to_local(known.apex);
+        known.direction = to - known.origin;
+        return complete_shape(known, surface_, triangles, options_.noise);
+      }
+    }
+    return fit_shape(surface_, triangles, options_.noise);
   }
 
   void describe(const ShapeFit& fit, FaceGroup& group) const {
@@ -263,8 +314,8 @@ class Grouper {
         name = kRest;
         counted = false;
       }
-      if (result_.named) {
-        const std::string& own = given_.group_names[at(file_name_[i])];
+      if (!file_name_.empty() && !file_name_[i].empty()) {
+        const std::string& own = file_name_[i];
         const bool alone = std::count(file_name_.begin(), file_name_.end(), file_name_[i]) == 1;
         name = alone ? own : own + "_" + name;
         counted = !alone && counted;
@@ -285,8 +336,9 @@ class Grouper {
   ExecutionContext& context_;
   FaceGroups result_;
   FaceRegions pieces_;
-  std::vector<std::int32_t> names_;      // per triangle of the surface; empty: the file names none
-  std::vector<std::int32_t> file_name_;  // per group
+  std::vector<std::int32_t> names_;     // per triangle of the surface; empty: the file names none
+  std::vector<std::string> file_name_;  // per group; empty: the file names none
+  bool by_name_ = false;                // groups are in the order of the file's names
   bool has_rest_ = false;
 };
 

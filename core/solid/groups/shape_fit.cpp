@@ -129,6 +129,28 @@ class Fitter {
     return {};
   }
 
+  [[nodiscard]] ShapeFit complete(const AnalyticSurface& known) const {
+    ShapeFit fit;
+    static_cast<AnalyticSurface&>(fit) = known;
+    double outwards = 0;
+    for (const Sample& s : samples_) {
+      outwards += s.area * dot(s.normal, direction_of(known, s.middle));
+    }
+    if (known.kind == FaceKind::kPlane) {
+      fit.origin = centroid_;
+      if (outwards < 0) fit.direction = -1.0 * fit.direction;
+      return fit;
+    }
+    fit.concave = outwards < 0;
+    if (known.kind == FaceKind::kSphere || known.kind == FaceKind::kSurface) return fit;
+    const std::vector<Point3> local = in_frame(AxisFrame::of_axis(known.origin, known.direction));
+    double widest = 0;
+    for (const Point3& p : local) widest = std::max(widest, std::hypot(p.x, p.y));
+    if (known.kind == FaceKind::kCone) fit.radius = widest;
+    if (widest > 0) fit.closes = round_about(local, {0, 0}, widest).widest < kWideGap;
+    return fit;
+  }
+
  private:
   static constexpr double kThinNoises = 20;  // as of faces
 
@@ -152,6 +174,19 @@ class Fitter {
     fit.origin = centroid_;
     fit.direction = mean;
     return fit;
+  }
+
+  // The normal of a surface near p, away from its axis, centre or tube.
+  [[nodiscard]] static Point3 direction_of(const AnalyticSurface& surface, Point3 p) {
+    const Point3 d = p - surface.origin;
+    const Point3 across = d - dot(d, surface.direction) * surface.direction;
+    switch (surface.kind) {
+      case FaceKind::kPlane: return surface.direction;
+      case FaceKind::kSphere: return d;
+      case FaceKind::kTorus:
+        return p - (surface.origin + (surface.radius / length(across)) * across);
+      default: return across;
+    }
   }
 
   // Directions that an axis may have: normals of cylinders are at right angles to it, those of cones at
@@ -433,38 +468,19 @@ class Fitter {
   double extent_ = 0;
 };
 
-Point3 unit(Point3 p) {
-  return (1 / length(p)) * p;
-}
-
 }  // namespace
-
-Point3 project_onto(const ShapeFit& fit, Point3 p) {
-  const Point3 d = p - fit.origin;
-  const Point3 along = dot(d, fit.direction) * fit.direction;
-  const Point3 across = d - along;
-  switch (fit.kind) {
-    case FaceKind::kPlane: return p - along;
-    case FaceKind::kCylinder: return fit.origin + along + fit.radius * unit(across);
-    case FaceKind::kSphere: return fit.origin + fit.radius * unit(d);
-    case FaceKind::kTorus: {
-      const Point3 ring = fit.origin + fit.radius * unit(across);
-      return ring + fit.tube_radius * unit(p - ring);
-    }
-    case FaceKind::kCone: {
-      const Point3 ray =
-          std::cos(fit.half_angle) * fit.direction + std::sin(fit.half_angle) * unit(across);
-      return fit.apex + dot(p - fit.apex, ray) * ray;
-    }
-    case FaceKind::kSurface: break;
-  }
-  return p;
-}
 
 ShapeFit fit_shape(const IndexedSurface& surface,
                    const std::vector<std::int32_t>& triangles,
                    double noise) {
   return Fitter(surface, triangles, noise).run();
+}
+
+ShapeFit complete_shape(const AnalyticSurface& known,
+                        const IndexedSurface& surface,
+                        const std::vector<std::int32_t>& triangles,
+                        double noise) {
+  return Fitter(surface, triangles, noise).complete(known);
 }
 
 }  // namespace symcell::solid

@@ -6,33 +6,30 @@
 // nothing is called by a kind for being near to it.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
-#include "core/cell/face_group.hpp"
+#include "core/geometry/analytic_surface.hpp"
 #include "core/geometry/indexed_surface.hpp"
-#include "core/geometry/point.hpp"
 
 namespace symcell::solid {
 
-struct ShapeFit {
-  FaceKind kind = FaceKind::kSurface;
-  Point3 origin;           // of the axis; of a sphere the centre, of a plane the centroid
-  Point3 direction;        // of the axis, of length 1; of a plane the normal, outwards
-  double radius = 0;       // of a cylinder, sphere or torus about its axis; largest of a cone
-  double tube_radius = 0;  // of a torus
-  double half_angle = 0;   // of a cone, radians
-  Point3 apex;             // of a cone
-  bool concave = false;    // the material is outside of it
-  bool closes = false;     // goes round its axis without a wide gap
+struct ShapeFit : AnalyticSurface {
+  // Of a plane `origin` is the centroid, and `direction` looks outwards; of a cone `radius` is the largest.
+  bool concave = false;  // the material is outside of it
+  bool closes = false;   // goes round its axis without a wide gap
 };
-
-// The point of the fitted surface that is nearest to p; p itself for a kind without one.
-[[nodiscard]] Point3 project_onto(const ShapeFit& fit, Point3 p);
 
 // `triangles`: of one face. `noise`: of the coordinates. The z axis is the first that is tried.
 // Cost: O(T).
 [[nodiscard]] ShapeFit fit_shape(const IndexedSurface& surface,
                                  const std::vector<std::int32_t>& triangles,
                                  double noise);
+
+// The same of a surface that is known.
+[[nodiscard]] ShapeFit complete_shape(const AnalyticSurface& known,
+                                      const IndexedSurface& surface,
+                                      const std::vector<std::int32_t>& triangles,
+                                      double noise);
 
 }  // namespace symcell::solid

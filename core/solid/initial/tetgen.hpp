@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "core/base/child_process.hpp"
 #include "core/base/error.hpp"
 #include "core/base/execution_context.hpp"
 #include "core/geometry/point.hpp"
-#include "core/solid/initial/child_process.hpp"
 
 namespace symcell::solid {
 

@@ -1,3 +1,4 @@
+#include <string>
 #include <utility>
 
 #include "core/solid/sector/surface_sector_source.hpp"
@@ -17,6 +18,10 @@ Result<CleanSurface> clean_whole(const TriangleSurface& surface,
   const double tolerance_rel =
       options.symmetry_tolerance_rel.value_or(kSurfaceSymmetryToleranceRel);
   auto clean = clean_surface(surface, context, tolerance_rel, options.repair);
+  if (clean && surface.cad_notes && surface.cad_notes->mended > 0) {
+    clean->repairs.insert(clean->repairs.begin(),
+                          std::to_string(surface.cad_notes->mended) + " invalid solids mended");
+  }
   if (!clean || clean->problem || !options.sector) return clean;
   const AxisFrame axis = AxisFrame::of_axis(options.axis_origin.value_or(Point3{0, 0, 0}),
                                             options.axis_direction.value_or(Point3{0, 0, 1}));
@@ -40,6 +45,11 @@ Result<std::unique_ptr<SectorSource>> symmetrise_surface(const TriangleSurface& 
   if (clean->problem) return fail(*clean->problem);
   auto symmetry = detect_surface_symmetry(*clean, options, context);
   if (!symmetry) return error_of(symmetry);
+  if (surface.cad_notes) {
+    const std::vector<Warning> of_file = cad_warnings(*surface.cad_notes);
+    std::vector<Warning>& warnings = symmetry->symmetry.warnings;
+    warnings.insert(warnings.begin(), of_file.begin(), of_file.end());
+  }
   const double tolerance = tolerance_rel * clean->diameter;
   auto source =
       std::make_unique<SurfaceSectorSource>(std::move(*clean), symmetry->symmetry, tolerance);
@@ -67,6 +77,7 @@ Result<SolidInspection> inspect_surface(const TriangleSurface& surface,
   result.facets = clean->surface.triangles.size();
   result.shells = static_cast<std::size_t>(clean->shells);
   result.repairs = clean->repairs;
+  if (surface.cad_notes) result.warnings = cad_warnings(*surface.cad_notes);
   if (!clean->repairs.empty()) result.warnings.push_back(surface_repaired_warning(clean->repairs));
   if (clean->problem) {
     result.problem = clean->problem->message;

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "core/solid/initial/child_process.hpp"
+#include "core/base/child_process.hpp"
 
 namespace symcell::solid {
 namespace {

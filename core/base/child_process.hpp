@@ -16,7 +16,7 @@
 #include "core/base/error.hpp"
 #include "core/base/execution_context.hpp"
 
-namespace symcell::solid {
+namespace symcell {
 
 struct ChildLimits {
   std::uint64_t cpu_seconds = 60;
@@ -57,4 +57,4 @@ struct ChildResult {
                                                const ChildLimits& limits,
                                                ExecutionContext& context);
 
-}  // namespace symcell::solid
+}  // namespace symcell

@@ -1,4 +1,4 @@
-#include "core/solid/initial/child_process.hpp"
+#include "core/base/child_process.hpp"
 
 #include <errno.h>
 #include <signal.h>
@@ -18,7 +18,7 @@
 
 #include "core/base/sanitized.hpp"
 
-namespace symcell::solid {
+namespace symcell {
 namespace {
 
 // Exit statuses that foreign code does not use: the child says itself how it ended.
@@ -200,4 +200,4 @@ Result<ChildResult> run_in_child(const std::function<bool(ChildOutput&)>& body,
   return result;
 }
 
-}  // namespace symcell::solid
+}  // namespace symcell
