@@ -38,6 +38,12 @@ double area_of(const Corners& p) {
   return 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
 }
 
+// A point of the surface, and the side that its triangle looks to.
+struct Sample {
+  Point3 place;
+  Point3 normal;  // of unit length, or zero
+};
+
 // The largest distance seen and where; points beyond the tolerance are all that need to be exact.
 struct Farthest {
   double tolerance = 0;
@@ -45,16 +51,16 @@ struct Farthest {
   double distance = 0;
   std::string where;
   // If not null, points beyond are kept instead of being counted.
-  std::vector<Point3>* kept = nullptr;
+  std::vector<Sample>* kept = nullptr;
 
-  void look(const TriangleTree& tree, const Point3& p, const char* what) {
+  void look(const TriangleTree& tree, const Point3& p, const char* what, Point3 normal = {}) {
     const auto near = tree.nearest(p, tolerance);
     if (near.triangle >= 0) {
       distance = std::max(distance, std::sqrt(near.squared));
       return;
     }
     if (kept != nullptr) {
-      kept->push_back(p);
+      kept->push_back({p, normal});
       return;
     }
     count(p, what);
@@ -107,23 +113,29 @@ class SurfaceChecker {
     }
     checks_.add("model.on_surface", from_mesh.beyond == 0, from_mesh.text());
 
-    std::vector<Point3> far;
-    Farthest from_surface{tolerance_, 0, 0, {}, surface_.crosses ? &far : nullptr};
+    std::vector<Sample> far;
+    Farthest from_surface{tolerance_, 0, 0, {}, &far};
     double area = 0;
     for (const Triangle& t : model_.triangles) area += area_of(corners(t));
     for (const Triangle& t : model_.triangles) {
       const Corners p = corners(t);
-      for (const Point3& corner : p) from_surface.look(boundary, corner, "the surface");
+      const Point3 n = cross(p[1] - p[0], p[2] - p[0]);
+      const Point3 normal = length(n) > 0 ? (1 / length(n)) * n : Point3{};
+      for (const Point3& corner : p) from_surface.look(boundary, corner, "the surface", normal);
       const double share = area > 0 ? kSamples * area_of(p) / area : 1;
-      each_sample(
-          p, std::min(static_cast<std::size_t>(share) + 1, kSamplesATriangle),
-          [&](const Point3& sample) { from_surface.look(boundary, sample, "the surface"); });
+      each_sample(p, std::min(static_cast<std::size_t>(share) + 1, kSamplesATriangle),
+                  [&](const Point3& sample) {
+                    from_surface.look(boundary, sample, "the surface", normal);
+                  });
     }
-    // Walls between bodies that overlap lie within the solid. A fair share of them is looked at.
-    const std::size_t step = 1 + far.size() * faces.size() / kMostSolidAngles;
+    // Walls between bodies that overlap lie within the solid, and walls of no thickness, where a face lies
+    // on another that looks the other way, bound nothing. A fair share of them is looked at.
+    const std::size_t step =
+        1 + far.size() * (faces.size() + 2 * model_.triangles.size()) / kMostSolidAngles;
     for (std::size_t i = 0; i < far.size(); i += step) {
-      if (std::abs(winding_number(outside, far[i])) > 0.5) continue;
-      from_surface.count(far[i], "the surface");
+      if (surface_.crosses && std::abs(winding_number(outside, far[i].place)) > 0.5) continue;
+      if (!is_wall(far[i])) continue;
+      from_surface.count(far[i].place, "the surface");
     }
     checks_.add("model.covered", from_surface.beyond == 0, from_surface.text());
 
@@ -133,6 +145,14 @@ class SurfaceChecker {
   }
 
  private:
+  // Whether the surface has its inside on one side of a sample of it and its outside on the other.
+  [[nodiscard]] bool is_wall(const Sample& s) const {
+    const Point3 step = tolerance_ * s.normal;
+    const double change = winding_number(surface_.welded, s.place + step) -
+                          winding_number(surface_.welded, s.place - step);
+    return std::abs(change) > 0.5;
+  }
+
   // A mesh with a crack, a void or a missing element is near the surface everywhere and still has
   // another boundary.
   void check_topology(const std::vector<Triangle>& boundary) {

@@ -13,6 +13,8 @@ namespace symcell::server {
 namespace {
 
 constexpr std::size_t kPieceBytes = 64UL * 1024;
+// Up to here to read a file takes less than to map it: to take a map away halts all processors.
+constexpr std::size_t kReadBytes = 64UL * 1024;
 
 [[noreturn]] void throw_errno(const std::string& what, const std::filesystem::path& path) {
   throw std::system_error(errno, std::generic_category(), what + " " + path.string());
@@ -111,6 +113,19 @@ MappedFile::MappedFile(const std::filesystem::path& path, Links links) {
   if (::fstat(file.get(), &status) != 0) throw_errno("cannot look at", path);
   size_ = static_cast<std::size_t>(status.st_size);
   if (size_ == 0) return;
+  if (size_ <= kReadBytes) {
+    address_ = ::operator new(size_);
+    std::size_t got = 0;
+    while (got < size_) {
+      const ssize_t n = ::read(file.get(), static_cast<char*>(address_) + got, size_ - got);
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) break;
+      got += static_cast<std::size_t>(n);
+    }
+    if (got == size_) return;
+    ::operator delete(std::exchange(address_, nullptr));
+    throw_errno("cannot read", path);
+  }
   address_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.get(), 0);
   if (address_ == MAP_FAILED) {
     address_ = nullptr;
@@ -123,7 +138,11 @@ MappedFile::MappedFile(MappedFile&& other) noexcept
 }
 
 MappedFile::~MappedFile() {
-  if (address_ != nullptr) ::munmap(address_, size_);
+  if (size_ <= kReadBytes) {
+    ::operator delete(address_);
+  } else if (address_ != nullptr) {
+    ::munmap(address_, size_);
+  }
 }
 
 void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to) {

@@ -80,6 +80,12 @@ std::string Sha256::finish() {
   return text;
 }
 
+std::string sha256_of(std::string_view bytes) {
+  Sha256 digest;
+  digest.append(bytes);
+  return digest.finish();
+}
+
 std::string sha256_of_file(const std::filesystem::path& path) {
   Sha256 digest;
   FileReader file(path, Links::kRefuse);

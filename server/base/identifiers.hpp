@@ -35,6 +35,7 @@ class Sha256 {
 };
 
 // Of a whole file, which must not be a symbolic link.
+[[nodiscard]] std::string sha256_of(std::string_view bytes);
 [[nodiscard]] std::string sha256_of_file(const std::filesystem::path& path);
 
 }  // namespace symcell::server

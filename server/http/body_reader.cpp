@@ -12,6 +12,8 @@ namespace symcell::server {
 namespace {
 
 constexpr std::size_t kMaxOptionsBytes = 64UL * 1024;
+// Up to here a body is held in memory; the lobby may have held as much of it already.
+constexpr std::size_t kHeldBytes = 64UL * 1024;
 
 enum class Coding { kIdentity, kGzip, kUnknown };
 
@@ -68,19 +70,19 @@ void ArrivedFile::remove() noexcept {
   std::filesystem::remove(path_, ignored);
 }
 
-std::optional<ArrivedFile> receive_body(Call& call,
-                                        const std::filesystem::path& destination,
-                                        std::size_t max_bytes) {
+namespace {
+
+// False: the call is answered.
+bool receive_into(Call& call, InflatingFile& file, std::size_t max_bytes) {
   const Coding coding = coding_of(call.exchange);
   if (coding == Coding::kUnknown) {
     respond_problem(call, ServiceProblem::kUnsupportedMediaType,
                     "the body's Content-Encoding must be gzip or none");
-    return std::nullopt;
+    return false;
   }
   if (!check_transfer_encoding(call) || !check_declared_length(call, max_bytes)) {
-    return std::nullopt;
+    return false;
   }
-  InflatingFile file(destination, max_bytes);
   GzipInflater inflater([&](std::string_view piece) { return file.add(piece); });
   bool inflates = true;
   // Without an announced body httplib would read until the connection ends.
@@ -93,26 +95,45 @@ std::optional<ArrivedFile> receive_body(Call& call,
       });
   if (file.fault() != InflatingFile::Fault::kNone) {
     refuse_file(call, file.fault(), max_bytes);
-    return std::nullopt;
+    return false;
   }
   if (!inflates) {
     refuse_broken(call, "the body is not valid gzip, though Content-Encoding says so");
-    return std::nullopt;
+    return false;
   }
   if (!read) {
     refuse_broken(call, "the body ended early, came too slowly, or is wrongly chunked");
-    return std::nullopt;
+    return false;
   }
   call.exchange.body_consumed = true;
   if (coding == Coding::kGzip && call.exchange.body_expected && !inflater.complete()) {
     refuse_broken(call, "the gzip stream in the body is cut off");
-    return std::nullopt;
+    return false;
   }
   if (!file.finish()) {
     refuse_file(call, file.fault(), max_bytes);
-    return std::nullopt;
+    return false;
   }
+  return true;
+}
+
+}  // namespace
+
+std::optional<ArrivedFile> receive_body(Call& call,
+                                        const std::filesystem::path& destination,
+                                        std::size_t max_bytes) {
+  InflatingFile file(destination, max_bytes);
+  if (!receive_into(call, file, max_bytes)) return std::nullopt;
   return ArrivedFile(destination);
+}
+
+std::optional<ArrivedBytes> receive_bytes(Call& call,
+                                          const std::filesystem::path& destination,
+                                          std::size_t max_bytes) {
+  InflatingFile file(destination, max_bytes, kHeldBytes);
+  if (!receive_into(call, file, max_bytes)) return std::nullopt;
+  if (file.is_held()) return ArrivedBytes(std::move(file.held()));
+  return ArrivedBytes(ArrivedFile(destination));
 }
 
 namespace {

@@ -6,6 +6,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
+
+#include "server/base/files.hpp"
 
 namespace symcell::server {
 
@@ -35,6 +39,23 @@ class ArrivedFile {
   std::filesystem::path path_;
 };
 
+// A body to be looked at: in memory if it is small, for files that soon go again cost a file system much.
+class ArrivedBytes {
+ public:
+  explicit ArrivedBytes(std::string held) : held_(std::move(held)) {}
+  explicit ArrivedBytes(ArrivedFile file)
+      : file_(std::move(file)), map_(std::in_place, file_->path(), Links::kRefuse) {}
+
+  [[nodiscard]] std::string_view bytes() const { return map_ ? map_->bytes() : held_; }
+  // Where there is one.
+  [[nodiscard]] std::optional<ArrivedFile>& file() { return file_; }
+
+ private:
+  std::string held_;
+  std::optional<ArrivedFile> file_;
+  std::optional<MappedFile> map_;
+};
+
 struct ArrivedForm {
   ArrivedFile model;
   std::string model_name;
@@ -48,6 +69,11 @@ struct ArrivedForm {
 [[nodiscard]] std::optional<ArrivedFile> receive_body(Call& call,
                                                       const std::filesystem::path& destination,
                                                       std::size_t max_bytes);
+
+// The same, for whoever takes it apart. `destination`: where it goes if it is not small.
+[[nodiscard]] std::optional<ArrivedBytes> receive_bytes(Call& call,
+                                                        const std::filesystem::path& destination,
+                                                        std::size_t max_bytes);
 
 // A multipart/form-data body with a file `model` and a text `options`.
 [[nodiscard]] std::optional<ArrivedForm> receive_form(Call& call,

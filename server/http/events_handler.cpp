@@ -37,14 +37,14 @@ class EventStream {
   // False: the client is gone.
   bool run(httplib::DataSink& sink) {
     if (!send(sink, "retry: 2000\n\n")) return false;
+    ChangeWaiter waiter(jobs_.changes(), id_);
     while (true) {
-      const std::uint64_t seen = jobs_.changes().version();
       const auto job = jobs_.find(id_);
       if (!job) break;
       if (!send(sink, news_of(*job))) return false;
       if (is_finished(job->state) || jobs_.stopping()) break;
       if (Clock::now() - last_sent_ > kHeartbeat && !send(sink, ": still here\n\n")) return false;
-      jobs_.changes().wait_beyond(seen, Clock::now() + kProgressInterval);
+      waiter.wait_until(Clock::now() + kProgressInterval);
     }
     sink.done();
     return true;

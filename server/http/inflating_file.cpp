@@ -1,6 +1,7 @@
 #include "server/http/inflating_file.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace symcell::server {
 namespace {
@@ -11,21 +12,34 @@ constexpr std::uint64_t kMostDensity = 20;
 constexpr std::uint64_t kDenseBytes = std::uint64_t{8} << 20U;
 }  // namespace
 
-InflatingFile::InflatingFile(const std::filesystem::path& destination, std::size_t max_bytes)
-    : file_(destination), max_bytes_(max_bytes) {
+InflatingFile::InflatingFile(std::filesystem::path destination,
+                             std::size_t max_bytes,
+                             std::size_t held_bytes)
+    : destination_(std::move(destination)), max_bytes_(max_bytes), held_bytes_(held_bytes) {
+  if (held_bytes_ == 0) file_.emplace(destination_);
 }
 
 bool InflatingFile::store(std::string_view piece) {
-  if (file_.size() + piece.size() > max_bytes_) {
+  if (size_ + piece.size() > max_bytes_) {
     fault_ = Fault::kTooLarge;
     return false;
   }
   // Half a megabyte of gzip would else keep half a gigabyte of disk for days.
-  if (file_.size() + piece.size() > std::max<std::uint64_t>(kDenseBytes, kMostDensity * came_)) {
+  if (size_ + piece.size() > std::max<std::uint64_t>(kDenseBytes, kMostDensity * came_)) {
     fault_ = Fault::kTooDense;
     return false;
   }
-  file_.write(piece);
+  size_ += piece.size();
+  if (!file_ && size_ <= held_bytes_) {
+    held_.append(piece);
+    return true;
+  }
+  if (!file_) {
+    file_.emplace(destination_);
+    file_->write(held_);
+    held_ = {};
+  }
+  file_->write(piece);
   return true;
 }
 
@@ -54,7 +68,7 @@ bool InflatingFile::finish() {
     fault_ = Fault::kDamaged;
     return false;
   }
-  file_.keep();
+  if (file_) file_->keep();
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,7 +16,10 @@ namespace symcell::server {
 
 class InflatingFile {
  public:
-  InflatingFile(const std::filesystem::path& destination, std::size_t max_bytes);
+  // `held_bytes`: what is no longer than this is held in memory, and no file is made.
+  InflatingFile(std::filesystem::path destination,
+                std::size_t max_bytes,
+                std::size_t held_bytes = 0);
 
   enum class Fault : std::uint8_t { kNone, kTooLarge, kTooDense, kDamaged };
 
@@ -30,13 +34,20 @@ class InflatingFile {
   // After the last piece: true if the file is complete and kept, false with a fault.
   [[nodiscard]] bool finish();
   [[nodiscard]] Fault fault() const { return fault_; }
+  // After finish().
+  [[nodiscard]] bool is_held() const { return !file_; }
+  [[nodiscard]] std::string& held() { return held_; }
 
  private:
   [[nodiscard]] bool store(std::string_view piece);
   [[nodiscard]] bool pass_on(std::string_view piece);
 
-  FileWriter file_;
+  std::filesystem::path destination_;
+  std::optional<FileWriter> file_;  // once there is too much to hold
+  std::string held_;
   std::size_t max_bytes_;
+  std::size_t held_bytes_;
+  std::uint64_t size_ = 0;
   Fault fault_ = Fault::kNone;
   std::uint64_t came_ = 0;
   bool counted_outside_ = false;

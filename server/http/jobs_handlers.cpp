@@ -69,6 +69,8 @@ void respond_accepted(Call& call, Job job, ServiceContext& context) {
         job.id, ChangeSignal::Clock::now() + std::chrono::seconds(seconds));
     if (waited) job = std::move(*waited);
   }
+  // Only an end is known to last.
+  if (!is_finished(job.state)) context.jobs.make_durable();
   respond_job(call, place && is_finished(job.state) ? 201 : 202, job, context);
 }
 
@@ -103,6 +105,7 @@ Submission submission_of(const Call& call, const std::string& key, const std::st
   submission.request_id = call.exchange.request_id;
   submission.traceparent = call.exchange.traceparent;
   submission.webhook = webhook;
+  submission.durable_soon = true;
   return submission;
 }
 

@@ -116,21 +116,23 @@ std::optional<ModelRequest> parse_parts(Call& call, ServiceContext& context, Par
 }
 
 std::optional<Parts> receive_envelope(Call& call, const JobFiles& files, std::size_t max_bytes) {
-  auto body = receive_body(call, files.incoming(), max_bytes);
+  auto body = receive_bytes(call, files.incoming(), max_bytes);
   if (!body) return std::nullopt;
-  const MappedFile bytes(body->path(), Links::kRefuse);
-  const auto envelope = split_envelope(bytes.bytes());
+  const auto envelope = split_envelope(body->bytes());
   if (!envelope) {
     respond_error(call, envelope.error(), "");
     return std::nullopt;
   }
-  if (envelope->bare) {
-    return Parts{std::move(*body), ModelFormat::kPslgJson, {}, std::nullopt, ""};
+  if (envelope->bare && body->file()) {
+    return Parts{std::move(*body->file()), ModelFormat::kPslgJson, {}, std::nullopt, ""};
   }
   const auto destination = files.incoming();
   FileWriter model(destination);
   model.write(envelope->model);
   model.keep();
+  if (envelope->bare) {
+    return Parts{ArrivedFile(destination), ModelFormat::kPslgJson, {}, std::nullopt, ""};
+  }
   std::optional<std::string> options;
   if (!envelope->options.empty()) options = std::string(envelope->options);
   return Parts{ArrivedFile(destination), ModelFormat::kPslgJson, {}, std::move(options), "/model"};

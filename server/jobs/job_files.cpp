@@ -1,5 +1,9 @@
 #include "server/jobs/job_files.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -24,11 +28,41 @@ fs::path JobFiles::incoming() const {
   return root_ / "incoming" / make_random_hex();
 }
 
-void JobFiles::adopt_model(const fs::path& arrived, std::string_view id) const {
+void JobFiles::adopt_model(const fs::path& arrived, std::string_view id, bool durable) const {
   const fs::path staged = staged_folder(*this, id);
   fs::create_directory(staged);
+  if (!durable) {
+    fs::rename(arrived, staged / "model");
+    return;
+  }
   rename_durably(arrived, staged / "model");
   sync_directory(root_ / "jobs");
+}
+
+// Of the whole file system: one call instead of three for every job.
+void JobFiles::synchronise() const {
+  const fs::path jobs = root_ / "jobs";
+  const int folder = ::open(jobs.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool done = folder >= 0 && ::syncfs(folder) == 0;
+  const int error = errno;
+  if (folder >= 0) ::close(folder);
+  if (!done) throw std::system_error(error, std::generic_category(), jobs.string());
+}
+
+bool JobFiles::restore(const FileCopy& copy) const {
+  const fs::path file = job(copy.job_id) / copy.name;
+  if (fs::is_regular_file(fs::symlink_status(file)) &&
+      MappedFile(file, Links::kRefuse).bytes() == copy.bytes) {
+    return false;
+  }
+  fs::create_directories(file.parent_path());
+  const fs::path part = partial(file);
+  fs::remove(part);
+  FileWriter writer(part);
+  writer.write(copy.bytes);
+  writer.keep();
+  fs::rename(part, file);
+  return true;
 }
 
 fs::path JobFiles::cell(const Job& job) const {

@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "server/jobs/job.hpp"
+#include "server/jobs/job_store.hpp"
 
 namespace symcell::server {
 
@@ -40,8 +41,13 @@ class JobFiles {
     return file += ".part";
   }
 
-  // Moves an arrived body to a job to be, see server/jobs/staged_model.hpp; durable when it returns.
-  void adopt_model(const std::filesystem::path& arrived, std::string_view id) const;
+  // Moves an arrived body to a job to be, see server/jobs/staged_model.hpp. `durable`: it is on the disk when
+  // this returns.
+  void adopt_model(const std::filesystem::path& arrived, std::string_view id, bool durable) const;
+  // All files of all jobs that were written before are on the disk when this returns.
+  void synchronise() const;
+  // Writes the file of a copy again if it is not as it was; synchronise() makes it last. False: it is.
+  [[nodiscard]] bool restore(const FileCopy& copy) const;
   // Removes everything of a job; never throws: what cannot be removed now goes at the next start.
   void remove(std::string_view id) const noexcept;
   // The model alone.

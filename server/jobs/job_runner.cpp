@@ -16,6 +16,8 @@
 #include "server/base/clock.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identifiers.hpp"
+#include "server/jobs/copy_keeper.hpp"
+#include "server/jobs/staged_model.hpp"
 #include "server/jobs/stored_files.hpp"
 
 namespace symcell::server {
@@ -59,12 +61,13 @@ void sync_file(const std::filesystem::path& file) {
   if (!synced) throw std::system_error(error, std::generic_category(), file.string());
 }
 
-// Also after a try that came half way. The folder is synchronised by whoever calls, once for all files.
-void publish_file(const std::filesystem::path& file) {
-  const std::filesystem::path part = JobFiles::partial(file);
-  if (std::filesystem::exists(file) && !std::filesystem::exists(part)) return;
-  sync_file(part);
-  std::filesystem::rename(part, file);
+// Also after a try that came half way. Whoever calls makes it last.
+void name_file(const std::filesystem::path& file) {
+  std::error_code error;
+  std::filesystem::rename(JobFiles::partial(file), file, error);
+  if (error && !std::filesystem::exists(file)) {
+    throw std::system_error(error.value(), std::generic_category(), file.string());
+  }
 }
 
 std::int64_t file_bytes(const std::filesystem::path& file) {
@@ -110,9 +113,13 @@ void JobRunner::start() {
   for (std::size_t i = 0; i < workers_; ++i) threads_.emplace_back([this] { work(); });
   if (!parts_.store.shared()) return;
   keeper_ = std::thread([this] { keep_runs(); });
-  parts_.store.listen([this] {
+  parts_.store.listen([this](std::string_view id) {
     poke();
-    parts_.changes.notify();
+    if (id.empty()) {
+      parts_.changes.notify_all();
+    } else {
+      parts_.changes.notify(id);
+    }
   });
 }
 
@@ -289,8 +296,9 @@ void JobRunner::run(const Job& job) {
     // Under the lock: stop() may destroy nothing before the notification is over.
     if (running_.empty()) idle_.notify_all();
   }
-  remove_files_if_deleted(id);
-  parts_.changes.notify();
+  // Whoever deletes a job cancels its run.
+  if (running->context.cancelled()) remove_files_if_deleted(id);
+  parts_.changes.notify(id);
   // Another of this client's jobs may have waited for this one.
   if (job.most_running > 0) poke();
 }
@@ -334,11 +342,24 @@ void JobRunner::count_lost_worker(const std::string& id) {
   static_cast<void>(persist(id, [&] { parts_.store.count_lost_worker(id); }));
 }
 
-bool JobRunner::publish(const Job& job) {
+bool JobRunner::publish(const Job& job, Published& published) {
   return persist(job.id, [&] {
-    publish_file(parts_.files.statistics(job));
-    publish_file(parts_.files.cell(job));
-    sync_directory(parts_.files.cell(job).parent_path());
+    const auto statistics = parts_.files.statistics(job);
+    const auto cell = parts_.files.cell(job);
+    name_file(statistics);
+    name_file(cell);
+    published.statistics = MappedFile(statistics, Links::kRefuse).bytes();
+    published.bytes = file_bytes(cell) + static_cast<std::int64_t>(published.statistics.size());
+    published.copies.clear();
+    if (parts_.store.keeps_copies() &&
+        published.bytes <= static_cast<std::int64_t>(kSmallFileBytes)) {
+      published.copies = {{statistics.filename(), published.statistics},
+                          {cell.filename(), std::string(MappedFile(cell, Links::kRefuse).bytes())}};
+      return;
+    }
+    sync_file(statistics);
+    sync_file(cell);
+    sync_directory(cell.parent_path());
   });
 }
 
@@ -352,9 +373,9 @@ void JobRunner::execute(const Job& job, Running& running) {
                                      {"waited", waited_s},
                                      {"request_id", std::string_view(job.request_id)},
                                      {"trace", trace_id_of(job.traceparent)}});
-  parts_.changes.notify();
+  parts_.changes.notify(id);
 
-  Result<void> result;
+  Result<Published> result;
   try {
     result = run_engine(job, running);
   } catch (const std::bad_alloc&) {
@@ -368,7 +389,7 @@ void JobRunner::execute(const Job& job, Running& running) {
   settle(job, running, result);
 }
 
-Result<void> JobRunner::run_engine(const Job& job, Running& running) {
+Result<JobRunner::Published> JobRunner::run_engine(const Job& job, Running& running) {
   const auto options = options_from_json(nlohmann::json::parse(job.options_json));
   if (!options) return error_of(options);
   EngineJob work;
@@ -379,9 +400,16 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
   work.statistics = JobFiles::partial(parts_.files.statistics(job));
   work.lost_workers = job.lost_workers;
   work.on_lost_worker = [this, &job] { count_lost_worker(job.id); };
+  try {
+    settle_model(parts_.files, job.id);
+  } catch (const std::filesystem::filesystem_error&) {
+    // There is no model; the check below tells.
+  }
   // Left by a run that died.
-  std::filesystem::remove(work.cell);
-  std::filesystem::remove(work.statistics);
+  if (job.attempt > 1) {
+    std::filesystem::remove(work.cell);
+    std::filesystem::remove(work.statistics);
+  }
 
   running.limit_s = options->time_limit_s;
   running.context.set_time_limit(options->time_limit_s);
@@ -398,7 +426,7 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
        pause = std::min(2 * pause, kLongestMeshPause)) {
     const Result<void> meshed = parts_.engine.run(work, running.context);
     if (meshed) break;
-    if (meshed.error().code != ErrorCode::kWriteFailed) return meshed;
+    if (meshed.error().code != ErrorCode::kWriteFailed) return error_of(meshed);
     parts_.metrics.count("symcell_job_write_retries_total");
     parts_.logger.warning("job_write_failed",
                           {{"job", job.id}, {"what", std::string_view(meshed.error().message)}});
@@ -415,11 +443,12 @@ Result<void> JobRunner::run_engine(const Job& job, Running& running) {
     }
     SYMCELL_TRY(running.context.check());
   }
-  if (!publish(job)) {
+  Published published;
+  if (!publish(job, published)) {
     running.requeue = true;
     return fail(ErrorCode::kCancelled, "the server stops");
   }
-  return {};
+  return published;
 }
 
 void JobRunner::keep_fault(const Job& job, const Error& error) {
@@ -432,10 +461,9 @@ void JobRunner::keep_fault(const Job& job, const Error& error) {
                        {"kept", kept ? kept->native() : std::string("not kept")}});
 }
 
-void JobRunner::count_phases(const Job& job) {
+void JobRunner::count_phases(std::string_view statistics) {
   try {
-    const auto document = nlohmann::json::parse(
-        MappedFile(parts_.files.statistics(job), Links::kRefuse).bytes(), nullptr, false);
+    const auto document = nlohmann::json::parse(statistics, nullptr, false);
     if (!document.is_object()) return;
     if (document.contains("timings_ms")) {
       for (const auto& [phase, ms] : document["timings_ms"].items()) {
@@ -447,20 +475,21 @@ void JobRunner::count_phases(const Job& job) {
     if (document.contains("cell")) {
       parts_.metrics.count("symcell_elements_total", {}, document["cell"].value("elements", 0.0));
     }
-  } catch (const std::exception&) {
-    // Deleted meanwhile; the figures are of no job then.
+  } catch (const nlohmann::json::exception&) {
+    // Of an engine that writes other figures.
   }
 }
 
-void JobRunner::settle(const Job& job, Running& running, const Result<void>& result) {
+void JobRunner::settle(const Job& job, Running& running, Result<Published>& result) {
   // By a clock that nobody sets.
   const std::int64_t took_ms = steady_ms() - running.started_steady_ms;
   JobChange change{.time_ms = job.started_ms.value_or(0) + took_ms, .attempt = job.attempt};
+  change.durable_soon = true;
   JobEvent event = JobEvent::kSucceed;
   if (result) {
-    change.result_bytes =
-        file_bytes(parts_.files.cell(job)) + file_bytes(parts_.files.statistics(job));
-    change.statistics_sha256 = sha256_of_file(parts_.files.statistics(job));
+    change.result_bytes = result->bytes;
+    change.statistics_sha256 = sha256_of(result->statistics);
+    change.copies = std::move(result->copies);
   } else if (result.error().code == ErrorCode::kCancelled) {
     event = running.requeue ? JobEvent::kRequeue : JobEvent::kCancel;
   } else {
@@ -472,13 +501,18 @@ void JobRunner::settle(const Job& job, Running& running, const Result<void>& res
   }
   std::optional<Job> settled;
   const bool written =
-      persist(job.id, [&] { settled = parts_.store.apply(job.id, event, change); });
+      persist(job.id, [&] { settled = parts_.store.apply(job.id, event, change); }) &&
+      persist(job.id, [&] { parts_.store.make_durable(); });
   if (!written) {
     // The row says running, and the next start takes the job up again.
     parts_.logger.error("job_end_not_written", {{"job", job.id}});
     return;
   }
-  if (!settled) return;  // deleted while it ran, or started again by another server
+  if (!settled) {
+    // Deleted while it ran, or started again by another server: run() looks which.
+    running.context.cancel();
+    return;
+  }
   const double seconds = static_cast<double>(took_ms) / 1000;
   const std::string_view state = job_state_name(settled->state);
   parts_.logger.info(event == JobEvent::kRequeue ? "job_requeued" : "job_finished",
@@ -490,7 +524,7 @@ void JobRunner::settle(const Job& job, Running& running, const Result<void>& res
                       {"trace", trace_id_of(job.traceparent)}});
   if (event == JobEvent::kRequeue) return;
   parts_.metrics.observe("symcell_job_duration_seconds", seconds, {{"state", state}});
-  if (event == JobEvent::kSucceed) count_phases(job);
+  if (event == JobEvent::kSucceed) count_phases(result->statistics);
   if (!change.error_code.empty()) {
     parts_.metrics.count("symcell_job_errors_total", {{"code", change.error_code}});
   }

@@ -96,15 +96,21 @@ class JobRunner {
   // is full or gone throws. False: the server stops.
   [[nodiscard]] bool persist(const std::string& id, const std::function<void()>& work);
   void count_lost_worker(const std::string& id);
-  // Moves the results to their names.
-  [[nodiscard]] bool publish(const Job& job);
-  [[nodiscard]] Result<void> run_engine(const Job& job, Running& running);
-  void count_phases(const Job& job);
+  // Results under their names.
+  struct Published {
+    std::int64_t bytes = 0;
+    std::string statistics;
+    std::vector<FileCopy> copies;  // where files are small enough; others are on the disk
+  };
+  // False: the server stops.
+  [[nodiscard]] bool publish(const Job& job, Published& published);
+  [[nodiscard]] Result<Published> run_engine(const Job& job, Running& running);
+  void count_phases(std::string_view statistics);
   // Of a shared store: tells it which runs are alive, and hears which of them are to end.
   void keep_runs();
   void keep_runs_once();
   void keep_fault(const Job& job, const Error& error);
-  void settle(const Job& job, Running& running, const Result<void>& result);
+  void settle(const Job& job, Running& running, Result<Published>& result);
 
   RunnerParts parts_;
   const std::size_t workers_;

@@ -85,12 +85,14 @@ JobService::~JobService() {
   if (!stopping_) static_cast<void>(finish_stop(std::chrono::milliseconds(0)));
   retention_.reset();
   runner_.reset();
+  copies_.reset();
   store_.reset();
 }
 
 void JobService::start() {
   // What others are about to store, or run, would look like what a dead server left.
   if (!store_->shared()) take_up_what_was_left();
+  if (store_->keeps_copies()) copies_ = std::make_unique<CopyKeeper>(*store_, files_, logger_);
   runner_->start();
   retention_ = std::make_unique<RetentionKeeper>(limits_.retention, *store_, files_, logger_);
 }
@@ -108,6 +110,7 @@ void JobService::take_up_what_was_left() {
         return store_->was_erased(id) ? Fate::kRemove : Fate::kUnknown;
       },
       [this](const std::string& id) { files_.remove(id); });
+  restore_copies(*store_, files_, logger_);
   store_->tidy(std::numeric_limits<std::int64_t>::max());
   for (const Job& job : store_->unfinished()) recover(job);
 }
@@ -127,7 +130,7 @@ void JobService::recover(const Job& job) {
 
 void JobService::begin_stop() {
   stopping_ = true;
-  changes_.notify();
+  changes_.notify_all();
 }
 
 bool JobService::finish_stop(std::chrono::milliseconds grace) {
@@ -178,6 +181,7 @@ SubmitOutcome JobService::submit_options(const Submission& submission,
     // Before the queue is asked: a repeated request gets its job however full the queue is.
     if (auto known = store_->find_key(*key)) {
       const bool same = known->result == InsertResult::kReplayed;
+      if (!submission.durable_soon) make_durable();
       return {same ? SubmitStatus::kReplayed : SubmitStatus::kKeyConflict, std::move(known->job)};
     }
   }
@@ -186,7 +190,10 @@ SubmitOutcome JobService::submit_options(const Submission& submission,
   if (outcome.status == SubmitStatus::kAccepted) {
     runner_->poke();
     if (retention_) retention_->poke();
+    if (copies_) copies_->poke();
   }
+  // Beside the run, which may have begun.
+  if (!submission.durable_soon) make_durable();
   return outcome;
 }
 
@@ -225,11 +232,18 @@ SubmitOutcome JobService::store_job(const Submission& submission,
   job.request_id = submission.request_id;
   job.traceparent = submission.traceparent;
   job.webhook = submission.webhook;
-  job.model_bytes = static_cast<std::int64_t>(std::filesystem::file_size(submission.model));
-  job.model_sha256 = sha256_of_file(submission.model);
+  const std::uintmax_t bytes = std::filesystem::file_size(submission.model);
+  job.model_bytes = static_cast<std::int64_t>(bytes);
+  std::vector<FileCopy> copies;
+  if (store_->keeps_copies() && bytes <= kSmallFileBytes) {
+    copies.push_back({"model", std::string(MappedFile(submission.model, Links::kRefuse).bytes())});
+    job.model_sha256 = sha256_of(copies.front().bytes);
+  } else {
+    job.model_sha256 = sha256_of_file(submission.model);
+  }
   try {
-    files_.adopt_model(submission.model, job.id);
-    InsertOutcome inserted = store_->insert(job, key, admission(submission.limits));
+    files_.adopt_model(submission.model, job.id, copies.empty());
+    InsertOutcome inserted = store_->insert(job, key, admission(submission.limits), copies);
     if (inserted.result == InsertResult::kInserted) {
       settle_or_erase(*store_, files_, job.id);
     } else {
@@ -249,19 +263,35 @@ SubmitOutcome JobService::store_job(const Submission& submission,
   return {SubmitStatus::kKeyConflict, {}};
 }
 
+bool JobService::end_is_unsettled(const Job& job) const {
+  return is_finished(job.state) && runner_->progress(job.id);
+}
+
 std::optional<Job> JobService::find(std::string_view id) {
   if (!is_job_id(id)) return std::nullopt;
-  return store_->find(id);
+  auto job = store_->find(id);
+  if (job && end_is_unsettled(*job)) make_durable();
+  return job;
+}
+
+std::vector<Job> JobService::list(const JobFilter& filter) {
+  auto jobs = store_->list(filter);
+  if (std::ranges::any_of(jobs, [this](const Job& job) { return end_is_unsettled(job); })) {
+    make_durable();
+  }
+  return jobs;
 }
 
 std::optional<Job> JobService::wait_finished(std::string_view id,
                                              ChangeSignal::Clock::time_point deadline) {
+  ChangeWaiter waiter(changes_, id);
   while (true) {
-    const std::uint64_t seen = changes_.version();
-    auto job = find(id);
-    if (!job || is_finished(job->state) || stopping_) return job;
-    if (ChangeSignal::Clock::now() >= deadline) return job;
-    changes_.wait_beyond(seen, deadline);
+    // What runs here has not ended; the runner tells when it has.
+    if (stopping_ || !runner_->progress(id)) {
+      auto job = find(id);
+      if (!job || is_finished(job->state) || stopping_) return job;
+    }
+    if (!waiter.wait_until(deadline)) return find(id);
   }
 }
 
@@ -299,7 +329,7 @@ std::optional<Job> JobService::cancel(std::string_view id) {
   if (job->state == JobState::kQueued &&
       store_->apply(id, JobEvent::kCancel, {.time_ms = now_ms(), .attempt = job->attempt})) {
     logger_.info("job_cancelled_in_queue", {{"job", id}});
-    changes_.notify();
+    changes_.notify(id);
     return find(id);
   }
   // It runs, or was started just now.
@@ -320,7 +350,7 @@ bool JobService::erase(std::string_view id) {
   if (!elsewhere && !runner_->progress(id)) files_.remove(id);
   faults_.remove(id);
   logger_.info("job_deleted", {{"job", id}});
-  changes_.notify();
+  changes_.notify(id);
   return true;
 }
 

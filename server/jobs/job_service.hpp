@@ -17,6 +17,7 @@
 #include "core/base/execution_context.hpp"
 #include "core/model/mesh_options.hpp"
 #include "server/jobs/change_signal.hpp"
+#include "server/jobs/copy_keeper.hpp"
 #include "server/jobs/data_directory.hpp"
 #include "server/jobs/job_engine.hpp"
 #include "server/jobs/job_files.hpp"
@@ -51,6 +52,9 @@ struct Submission {
   std::string request_id = {};
   std::string traceparent = {};
   std::string webhook = {};
+  // Whoever asks for this calls make_durable() before anybody is told that the job was accepted, or waits
+  // for its end, which is durable.
+  bool durable_soon = false;
 };
 
 enum class SubmitStatus : std::uint8_t {
@@ -87,13 +91,14 @@ class JobService {
   [[nodiscard]] bool finish_stop(std::chrono::milliseconds grace);
 
   [[nodiscard]] SubmitOutcome submit(const Submission& submission);
+  void make_durable() { store_->make_durable(); }
   // The same model and options again, of which `submission` has all but these two.
   [[nodiscard]] SubmitOutcome rerun(const Job& job, Submission submission);
   // True if a submission of this client without a known key would be refused now.
   [[nodiscard]] bool queue_is_full(const std::string& client = {}, const KeyLimits& limits = {});
 
   [[nodiscard]] std::optional<Job> find(std::string_view id);
-  [[nodiscard]] std::vector<Job> list(const JobFilter& filter) { return store_->list(filter); }
+  [[nodiscard]] std::vector<Job> list(const JobFilter& filter);
   // The job once it is finished, or as it is at the deadline or when the server stops.
   [[nodiscard]] std::optional<Job> wait_finished(std::string_view id,
                                                  ChangeSignal::Clock::time_point deadline);
@@ -127,6 +132,8 @@ class JobService {
  private:
   void take_up_what_was_left();
   void recover(const Job& job);
+  // Nobody is shown an end that a failure of the machine might undo.
+  [[nodiscard]] bool end_is_unsettled(const Job& job) const;
   [[nodiscard]] Admission admission(const KeyLimits& limits) const;
   [[nodiscard]] SubmitOutcome submit_options(const Submission& submission,
                                              const std::string& options_json);
@@ -147,6 +154,7 @@ class JobService {
   std::unique_ptr<KeyRing> key_ring_;
   std::unique_ptr<JobRunner> runner_;
   std::unique_ptr<RetentionKeeper> retention_;
+  std::unique_ptr<CopyKeeper> copies_;
   std::atomic<bool> stopping_{false};
 };
 

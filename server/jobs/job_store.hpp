@@ -1,7 +1,7 @@
 // Where jobs are kept: an interface, so that an embedded and a shared database can stand behind it.
 //
-// Every call is atomic and, once it returns, durable. Any thread may call. A failing database
-// throws StoreError (see server/base/files.hpp for why).
+// Every call is atomic, seen by every other once it returns and, but for what says so, durable then. Any thread
+// may call. A failing database throws StoreError (see server/base/files.hpp for why).
 #pragma once
 
 #include <array>
@@ -49,6 +49,15 @@ enum class InsertResult : std::uint8_t {
   kBytesSpent,  // the owner has sent as many bytes today as he may
 };
 
+// A small file of a job, kept beside its row until the file itself is known to be on the disk: to write twice
+// costs less than to wait for the disk for every file by itself.
+struct FileCopy {
+  std::string name;  // within the job's folder
+  std::string bytes;
+  std::string job_id = {};  // these two are given by the store
+  std::int64_t number = 0;
+};
+
 // What a job must find to be taken: places in the queue, and for its client.
 struct Admission {
   std::int64_t queued = std::numeric_limits<std::int64_t>::max();
@@ -89,6 +98,10 @@ struct JobChange {
   std::string error_json = {};
   std::int64_t result_bytes = 0;
   std::string statistics_sha256 = {};
+  // Of its results; of stores that keep copies.
+  std::vector<FileCopy> copies = {};
+  // Whoever asks for this calls make_durable() before anybody is told.
+  bool durable_soon = false;
 };
 
 struct StoreTotals {
@@ -119,10 +132,32 @@ class JobStore {
  public:
   virtual ~JobStore() = default;
 
-  // `job.sequence` is given by the store, and so is its turn among those that wait.
+  // `job.sequence` is given by the store, and so is its turn among those that wait. Durable from the next
+  // make_durable() on, like claim(), or from any other call that writes and came later. `copies`: of its
+  // model; of stores that keep copies.
   virtual InsertOutcome insert(const Job& job,
                                const std::optional<IdempotencyKey>& key,
-                               const Admission& admission) = 0;
+                               const Admission& admission,
+                               const std::vector<FileCopy>& copies) = 0;
+  InsertOutcome insert(const Job& job,
+                       const std::optional<IdempotencyKey>& key,
+                       const Admission& admission) {
+    return insert(job, key, admission, {});
+  }
+  // All that was written before is on the disk when this returns. Callers that come together wait for the
+  // disk together.
+  virtual void make_durable() {}
+  // Whether copies of small files are kept. Then files of jobs need not be synchronised one by one if their
+  // copies go with insert() or apply(); now and then all are synchronised, and the copies forgotten.
+  [[nodiscard]] virtual bool keeps_copies() const { return false; }
+  // How many bytes there are at most.
+  [[nodiscard]] virtual std::uint64_t copied_bytes() { return 0; }
+  // The number of the newest one. What it is a copy of was written before it.
+  [[nodiscard]] virtual std::int64_t newest_copy() { return 0; }
+  // The oldest one with a higher number.
+  [[nodiscard]] virtual std::optional<FileCopy> copy_after(std::int64_t /*number*/) { return {}; }
+  // Those up to this one are of no use any more.
+  virtual void forget_copies(std::int64_t /*number*/) {}
   // kReplayed or kConflict; nullopt if the key is unknown.
   [[nodiscard]] virtual std::optional<InsertOutcome> find_key(const IdempotencyKey& key) = 0;
   [[nodiscard]] virtual std::optional<Job> find(std::string_view id) = 0;
@@ -161,8 +196,9 @@ class JobStore {
   virtual std::size_t rescue() { return 0; }
   // Asks whoever runs the job to end it.
   virtual void request_cancel(std::string_view id) { static_cast<void>(id); }
-  // `changed`: called, from a thread of the store's, when another server has changed a job.
-  virtual void listen(std::function<void()> /*changed*/) {}
+  // `changed`: called, from a thread of the store's, when another server has changed the job with this id;
+  // without one: any may have changed.
+  virtual void listen(const std::function<void(std::string_view id)>& /*changed*/) {}
   // The job after the event; nullopt if it is gone or the event is not allowed in its state,
   // or `change.attempt` is not its attempt.
   virtual std::optional<Job> apply(std::string_view id,

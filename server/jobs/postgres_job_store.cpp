@@ -138,13 +138,13 @@ struct TakenBack {
 
 class Listener final : public pqxx::notification_receiver {
  public:
-  Listener(pqxx::connection_base& connection, std::function<void()> heard)
+  Listener(pqxx::connection_base& connection, std::function<void(std::string_view id)> heard)
       : pqxx::notification_receiver(connection, "symcell_jobs"), heard_(std::move(heard)) {}
 
-  void operator()(const std::string& /*payload*/, int /*backend*/) override { heard_(); }
+  void operator()(const std::string& payload, int /*backend*/) override { heard_(payload); }
 
  private:
-  std::function<void()> heard_;
+  std::function<void(std::string_view id)> heard_;
 };
 
 }  // namespace
@@ -198,13 +198,13 @@ struct PostgresJobStore::Impl {
     }
   }
 
-  void keep_listening(const std::function<void()>& changed) {
+  void keep_listening(const std::function<void(std::string_view id)>& changed) {
     while (listening) {
       try {
         const auto connection = connections.open();
         const Listener receiver(*connection, changed);
         // Whatever happened while nobody listened.
-        changed();
+        changed({});
         while (listening) connection->await_notification(1, 0);
       } catch (const std::exception&) {
         std::this_thread::sleep_for(kReconnectPause);
@@ -248,7 +248,8 @@ PostgresJobStore::~PostgresJobStore() = default;
 
 InsertOutcome PostgresJobStore::insert(const Job& job,
                                        const std::optional<IdempotencyKey>& key,
-                                       const Admission& admission) {
+                                       const Admission& admission,
+                                       const std::vector<FileCopy>& /*copies*/) {
   try {
     return impl_->connections.transact([&](pqxx::work& transaction) -> InsertOutcome {
       if (key) {
@@ -424,13 +425,12 @@ void PostgresJobStore::request_cancel(std::string_view id) {
   });
 }
 
-void PostgresJobStore::listen(std::function<void()> changed) {
+void PostgresJobStore::listen(const std::function<void(std::string_view id)>& changed) {
   impl_->listening = false;
   if (impl_->listener.joinable()) impl_->listener.join();
   if (!changed) return;
   impl_->listening = true;
-  impl_->listener =
-      std::thread([this, changed = std::move(changed)] { impl_->keep_listening(changed); });
+  impl_->listener = std::thread([this, changed] { impl_->keep_listening(changed); });
 }
 
 std::optional<std::int64_t> PostgresJobStore::oldest_waiting_ms() {

@@ -22,9 +22,11 @@ class PostgresJobStore final : public JobStore {
   PostgresJobStore(const std::string& url, const std::string& directory_id);
   ~PostgresJobStore() override;
 
+  using JobStore::insert;
   InsertOutcome insert(const Job& job,
                        const std::optional<IdempotencyKey>& key,
-                       const Admission& admission) override;
+                       const Admission& admission,
+                       const std::vector<FileCopy>& copies) override;
   [[nodiscard]] std::optional<InsertOutcome> find_key(const IdempotencyKey& key) override;
   [[nodiscard]] std::optional<Job> find(std::string_view id) override;
   [[nodiscard]] std::vector<Job> list(const JobFilter& filter) override;
@@ -36,7 +38,7 @@ class PostgresJobStore final : public JobStore {
   [[nodiscard]] std::vector<RunOrder> keep(const std::vector<RunState>& runs) override;
   std::size_t rescue() override;
   void request_cancel(std::string_view id) override;
-  void listen(std::function<void()> changed) override;
+  void listen(const std::function<void(std::string_view id)>& changed) override;
   [[nodiscard]] std::optional<std::int64_t> oldest_waiting_ms() override;
   [[nodiscard]] std::vector<Job> spent_models(std::int64_t before_clock_ms,
                                               std::size_t limit) override;

@@ -15,6 +15,8 @@ constexpr std::size_t kBatch = 100;
 constexpr std::int64_t kLeastPerSweep = 100;
 constexpr std::int64_t kShareOfASweep = 20;
 constexpr std::chrono::minutes kInterval{1};
+// After a sweep, however many jobs come: each of them would cost a look at the oldest.
+constexpr std::chrono::milliseconds kPause{500};
 
 std::int64_t finished_count(const StoreTotals& totals) {
   std::int64_t count = 0;
@@ -110,6 +112,8 @@ void RetentionKeeper::work(const std::stop_token& stop) {
     } catch (const std::exception& exception) {
       logger_.error("retention_failed", {{"what", exception.what()}});
     }
+    std::unique_lock lock(mutex_);
+    wake_.wait_for(lock, stop, kPause, [] { return false; });
   }
 }
 

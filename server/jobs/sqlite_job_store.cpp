@@ -3,12 +3,17 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
+#include "server/jobs/sqlite_connection.hpp"
+#include "server/jobs/sqlite_log.hpp"
+#include "server/jobs/sqlite_rows.hpp"
 #include "server/jobs/sqlite_schema.hpp"
 
 namespace symcell::server {
@@ -21,12 +26,6 @@ constexpr std::int64_t kMostDownMs = std::int64_t{24} * 3600 * 1000;
 // How long a look at the store's health waits for those that write.
 constexpr std::chrono::milliseconds kHealthPatience{250};
 
-constexpr const char* kColumns =
-    "sequence, id, state, created_ms, started_ms, finished_ms, model_format, model_name, "
-    "options_json, error_code, error_json, model_bytes, result_bytes, lost_workers, "
-    "finished_clock_ms, model_sha256, statistics_sha256, client, weight, attempt, "
-    "owner, most_running, model_kept, request_id, traceparent, webhook";
-
 // The waiting job whose turn it is, of those whose client may run one more.
 constexpr const char* kWhoseTurn =
     " FROM jobs AS j INDEXED BY jobs_waiting WHERE j.state = 'queued' AND (j.most_running = 0 OR "
@@ -38,76 +37,17 @@ std::int64_t day_of(std::int64_t ms) {
   return ms / kDayMs;
 }
 
-// Commits that a power failure may undo: a start that is lost leaves its job queued, as a start of the
-// server would anyhow. Whatever is committed after it makes it last.
-class Unsynchronised {
+// Whatever became of what is written while this lives, what waits for the disk waits for it, too.
+class Committed {
  public:
-  explicit Unsynchronised(SQLite::Database& database) : database_(database) {
-    database_.exec("PRAGMA synchronous = NORMAL");
-  }
-  ~Unsynchronised() {
-    // Cannot fail: it sets a flag of the connection.
-    database_.tryExec("PRAGMA synchronous = FULL");
-  }
-  Unsynchronised(const Unsynchronised&) = delete;
-  Unsynchronised& operator=(const Unsynchronised&) = delete;
+  explicit Committed(SqliteLog& log) : log_(log) {}
+  ~Committed() { log_.committed(); }
+  Committed(const Committed&) = delete;
+  Committed& operator=(const Committed&) = delete;
 
  private:
-  SQLite::Database& database_;
+  SqliteLog& log_;
 };
-
-std::string format_name(ModelFormat format) {
-  return std::string(model_format_info(format).name);
-}
-
-ModelFormat format_from_name(const std::string& name) {
-  if (const auto format = model_format_of_name(name)) return *format;
-  throw std::runtime_error("the job database holds an unknown model format: " + name);
-}
-
-std::optional<std::int64_t> optional_time(const SQLite::Column& column) {
-  if (column.isNull()) return std::nullopt;
-  return column.getInt64();
-}
-
-Job read_job(SQLite::Statement& row) {
-  Job job;
-  job.sequence = row.getColumn(0).getInt64();
-  job.id = row.getColumn(1).getString();
-  const auto state = job_state_from_name(row.getColumn(2).getString());
-  if (!state) throw std::runtime_error("the job database holds an unknown state");
-  job.state = *state;
-  job.created_ms = row.getColumn(3).getInt64();
-  job.started_ms = optional_time(row.getColumn(4));
-  job.finished_ms = optional_time(row.getColumn(5));
-  job.model_format = format_from_name(row.getColumn(6).getString());
-  job.model_name = row.getColumn(7).getString();
-  job.options_json = row.getColumn(8).getString();
-  job.error_code = row.getColumn(9).getString();
-  job.error_json = row.getColumn(10).getString();
-  job.model_bytes = row.getColumn(11).getInt64();
-  job.result_bytes = row.getColumn(12).getInt64();
-  job.lost_workers = row.getColumn(13).getInt();
-  job.finished_clock_ms = optional_time(row.getColumn(14));
-  job.model_sha256 = row.getColumn(15).getString();
-  job.statistics_sha256 = row.getColumn(16).getString();
-  job.client = row.getColumn(17).getString();
-  job.weight = row.getColumn(18).getInt();
-  job.attempt = row.getColumn(19).getInt();
-  job.owner = row.getColumn(20).getString();
-  job.most_running = row.getColumn(21).getInt64();
-  job.model_kept = row.getColumn(22).getInt() != 0;
-  job.request_id = row.getColumn(23).getString();
-  job.traceparent = row.getColumn(24).getString();
-  job.webhook = row.getColumn(25).getString();
-  return job;
-}
-
-std::vector<Job> read_jobs(SQLite::Statement& query) {
-  std::vector<Job> jobs;
-  while (query.executeStep()) jobs.push_back(read_job(query));
-  return jobs;
-}
 
 }  // namespace
 
@@ -120,24 +60,43 @@ struct SqliteJobStore::Impl {
     reader.setBusyTimeout(kSqliteBusyPatienceMs);
     database.setBusyTimeout(kSqliteBusyPatienceMs);
     database.exec("PRAGMA journal_mode = WAL");
-    // FULL: a commit is on the disk when it returns; an accepted job is never lost.
-    database.exec("PRAGMA synchronous = FULL");
+    // A commit goes to the log alone; `wal` puts it on the disk, for all who wait together.
+    database.exec("PRAGMA synchronous = NORMAL");
     database.exec("PRAGMA foreign_keys = ON");
     migrate_job_database(database);
     load_totals();
     start_clock();
+    name_directory(directory_id);
+    wal = std::make_unique<SqliteLog>(file, database);
+    wal->reach();
+  }
+
+  void name_directory(const std::string& directory_id) {
     if (directory_id.empty()) return;
-    SQLite::Statement name(
-        database, "INSERT OR IGNORE INTO properties (name, value) VALUES ('directory_id', ?)");
+    Prepared name(database,
+                  "INSERT OR IGNORE INTO properties (name, value) VALUES ('directory_id', ?)");
     name.bind(1, directory_id);
     name.exec();
   }
 
-  // Runs `work` with the connection that writes, one at a time.
+  // Runs `work` with the connection that writes, one at a time. What it commits lasts only from the next
+  // make_durable() on.
+  template <class Work>
+  auto write_soon_durable(const Work& work) {
+    const std::lock_guard lock(writing);
+    const Committed committed(*wal);
+    return translate_sqlite_errors([&] { return work(database); });
+  }
   template <class Work>
   auto write(const Work& work) {
-    const std::lock_guard lock(writing);
-    return translate_sqlite_errors([&] { return work(database); });
+    if constexpr (std::is_void_v<decltype(work(database))>) {
+      write_soon_durable(work);
+      wal->reach();
+    } else {
+      auto result = write_soon_durable(work);
+      wal->reach();
+      return result;
+    }
   }
   // The same with the connection that reads: a write that waits for a lock holds nobody up.
   template <class Work>
@@ -147,20 +106,19 @@ struct SqliteJobStore::Impl {
   }
 
   void set_property(const char* name, std::int64_t value) {
-    SQLite::Statement set(database,
-                          "INSERT INTO properties (name, value) VALUES (?, ?) "
-                          "ON CONFLICT (name) DO UPDATE SET value = excluded.value");
+    Prepared set(database,
+                 "INSERT INTO properties (name, value) VALUES (?, ?) "
+                 "ON CONFLICT (name) DO UPDATE SET value = excluded.value");
     set.bind(1, name);
     set.bind(2, std::to_string(value));
     set.exec();
   }
 
   [[nodiscard]] std::optional<std::int64_t> property(const char* name) {
-    SQLite::Statement query(database,
-                            "SELECT CAST(value AS INTEGER) FROM properties WHERE name = ?");
+    Prepared query(database, "SELECT CAST(value AS INTEGER) FROM properties WHERE name = ?");
     query.bind(1, name);
-    if (!query.executeStep()) return std::nullopt;
-    return query.getColumn(0).getInt64();
+    if (!query.step()) return std::nullopt;
+    return query.column(0).getInt64();
   }
 
   void start_clock() {
@@ -189,14 +147,14 @@ struct SqliteJobStore::Impl {
   // Counted once, and from then on with every change: a count over all jobs for every job that comes
   // would cost the more the more are stored.
   void load_totals() {
-    SQLite::Statement query(database,
-                            "SELECT state, COUNT(*), SUM(model_bytes + result_bytes) FROM jobs "
-                            "GROUP BY state");
-    while (query.executeStep()) {
-      const auto state = job_state_from_name(query.getColumn(0).getString());
+    Prepared query(database,
+                   "SELECT state, COUNT(*), SUM(model_bytes + result_bytes) FROM jobs "
+                   "GROUP BY state");
+    while (query.step()) {
+      const auto state = job_state_from_name(query.column(0).getString());
       if (!state) throw std::runtime_error("the job database holds an unknown state");
-      totals.by_state[static_cast<std::size_t>(*state)] = query.getColumn(1).getInt64();
-      totals.bytes += query.getColumn(2).getInt64();
+      totals.by_state[static_cast<std::size_t>(*state)] = query.column(1).getInt64();
+      totals.bytes += query.column(2).getInt64();
     }
   }
 
@@ -212,34 +170,33 @@ struct SqliteJobStore::Impl {
     return totals.by_state[static_cast<std::size_t>(JobState::kQueued)];
   }
 
-  static ClientUsage usage(SQLite::Database& database,
+  static ClientUsage usage(SqliteConnection& database,
                            std::string_view client,
                            std::int64_t time_ms) {
-    SQLite::Statement query(
-        database,
-        "SELECT (SELECT COUNT(*) FROM jobs INDEXED BY jobs_waiting_by_client "
-        "WHERE state = 'queued' AND client = ?1), "
-        "(SELECT COUNT(*) FROM jobs INDEXED BY jobs_running_by_client "
-        "WHERE state = 'running' AND client = ?1), "
-        "COALESCE((SELECT bytes FROM key_usage WHERE owner = ?1 AND day = ?2), 0), "
-        "COALESCE((SELECT jobs FROM key_usage WHERE owner = ?1 AND day = ?2), 0)");
+    Prepared query(database,
+                   "SELECT (SELECT COUNT(*) FROM jobs INDEXED BY jobs_waiting_by_client "
+                   "WHERE state = 'queued' AND client = ?1), "
+                   "(SELECT COUNT(*) FROM jobs INDEXED BY jobs_running_by_client "
+                   "WHERE state = 'running' AND client = ?1), "
+                   "COALESCE((SELECT bytes FROM key_usage WHERE owner = ?1 AND day = ?2), 0), "
+                   "COALESCE((SELECT jobs FROM key_usage WHERE owner = ?1 AND day = ?2), 0)");
     query.bind(1, std::string(client));
     query.bind(2, day_of(time_ms));
-    query.executeStep();
-    return {.queued = query.getColumn(0).getInt64(),
-            .running = query.getColumn(1).getInt64(),
-            .bytes_today = query.getColumn(2).getInt64(),
-            .jobs_today = query.getColumn(3).getInt64()};
+    query.step();
+    return {.queued = query.column(0).getInt64(),
+            .running = query.column(1).getInt64(),
+            .bytes_today = query.column(2).getInt64(),
+            .jobs_today = query.column(3).getInt64()};
   }
 
   // Counts the job's bytes; false: that would be more than the day has.
-  static bool spend(SQLite::Database& database, const Job& job, std::int64_t bytes_per_day) {
+  static bool spend(SqliteConnection& database, const Job& job, std::int64_t bytes_per_day) {
     const ClientUsage used = usage(database, job.owner, job.created_ms);
     if (job.model_bytes > bytes_per_day - used.bytes_today) return false;
-    SQLite::Statement count(database,
-                            "INSERT INTO key_usage (owner, day, jobs, bytes) VALUES (?, ?, 1, ?) "
-                            "ON CONFLICT (owner, day) DO UPDATE SET jobs = jobs + 1, "
-                            "bytes = bytes + excluded.bytes");
+    Prepared count(database,
+                   "INSERT INTO key_usage (owner, day, jobs, bytes) VALUES (?, ?, 1, ?) "
+                   "ON CONFLICT (owner, day) DO UPDATE SET jobs = jobs + 1, "
+                   "bytes = bytes + excluded.bytes");
     count.bind(1, job.owner);
     count.bind(2, day_of(job.created_ms));
     count.bind(3, job.model_bytes);
@@ -250,8 +207,8 @@ struct SqliteJobStore::Impl {
   // Turns are times of a virtual clock (start-time fair queueing): it stands at the turn of the job
   // started last, and a client's next job comes 1 / weight after its last one, or after the clock.
   // So who asked for little is served before the long queue of another.
-  static double next_turn(SQLite::Database& database, const std::string& client, int weight) {
-    SQLite::Statement query(
+  static double next_turn(SqliteConnection& database, const std::string& client, int weight) {
+    Prepared query(
         database,
         "SELECT MAX(COALESCE("
         "(SELECT MAX(turn) FROM jobs INDEXED BY jobs_running WHERE state = 'running'), "
@@ -259,35 +216,49 @@ struct SqliteJobStore::Impl {
         "COALESCE((SELECT MAX(turn) FROM jobs INDEXED BY jobs_waiting_by_client "
         "WHERE state = 'queued' AND client = ?), 0))");
     query.bind(1, client);
-    query.executeStep();
-    return query.getColumn(0).getDouble() + 1.0 / std::max(1, weight);
+    query.step();
+    return query.column(0).getDouble() + 1.0 / std::max(1, weight);
   }
 
   std::mutex counting;  // guards `totals`
   StoreTotals totals;
 
+  std::unique_ptr<SqliteLog> wal;
   std::timed_mutex writing;  // guards `database`
-  SQLite::Database database;
+  SqliteConnection database;
   std::mutex reading;  // guards `reader`
-  SQLite::Database reader;
+  SqliteConnection reader;
 
-  static std::optional<Job> find(SQLite::Database& database, std::string_view id) {
-    SQLite::Statement query(database,
-                            std::string("SELECT ") + kColumns + " FROM jobs WHERE id = ?");
+  // Of the transaction that runs.
+  void copy_files(const std::string& id, const std::vector<FileCopy>& copies) {
+    for (const FileCopy& copy : copies) {
+      Prepared keep(database, "INSERT INTO file_copies (job_id, name, bytes) VALUES (?, ?, ?)");
+      keep.bind(1, id);
+      keep.bind(2, copy.name);
+      keep.bind_blob(3, copy.bytes);
+      keep.exec();
+      copied_bytes += copy.bytes.size();
+    }
+  }
+
+  std::atomic<std::uint64_t> copied_bytes{0};  // in file_copies, at most
+
+  static std::optional<Job> find(SqliteConnection& database, std::string_view id) {
+    Prepared query(database, std::string("SELECT ") + kJobColumns + " FROM jobs WHERE id = ?");
     query.bind(1, std::string(id));
-    if (!query.executeStep()) return std::nullopt;
+    if (!query.step()) return std::nullopt;
     return read_job(query);
   }
 
-  static std::optional<InsertOutcome> known_key(SQLite::Database& database,
+  static std::optional<InsertOutcome> known_key(SqliteConnection& database,
                                                 const IdempotencyKey& key) {
-    SQLite::Statement query(
-        database, "SELECT digest, job_id FROM idempotency_keys WHERE owner = ? AND key = ?");
+    Prepared query(database,
+                   "SELECT digest, job_id FROM idempotency_keys WHERE owner = ? AND key = ?");
     query.bind(1, key.owner);
     query.bind(2, key.key);
-    if (!query.executeStep()) return std::nullopt;
-    const bool same = query.getColumn(0).getString() == key.digest;
-    const auto job = find(database, query.getColumn(1).getString());
+    if (!query.step()) return std::nullopt;
+    const bool same = query.column(0).getString() == key.digest;
+    const auto job = find(database, query.column(1).getString());
     if (!job) throw std::runtime_error("an idempotency key without its job");
     return InsertOutcome{same ? InsertResult::kReplayed : InsertResult::kConflict, *job};
   }
@@ -303,8 +274,9 @@ SqliteJobStore::~SqliteJobStore() = default;
 
 InsertOutcome SqliteJobStore::insert(const Job& job,
                                      const std::optional<IdempotencyKey>& key,
-                                     const Admission& admission) {
-  return impl_->write([&](SQLite::Database& database) -> InsertOutcome {
+                                     const Admission& admission,
+                                     const std::vector<FileCopy>& copies) {
+  return impl_->write_soon_durable([&](SqliteConnection& database) -> InsertOutcome {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
     if (key) {
       if (auto known = Impl::known_key(database, *key)) return *known;
@@ -316,15 +288,15 @@ InsertOutcome SqliteJobStore::insert(const Job& job,
     if (!job.owner.empty() && !Impl::spend(database, job, admission.bytes_per_day)) {
       return {InsertResult::kBytesSpent, {}};
     }
-    SQLite::Statement insert(database,
-                             "INSERT INTO jobs (id, state, created_ms, model_format, model_name, "
-                             "options_json, model_bytes, model_sha256, client, weight, turn, "
-                             "owner, most_running, request_id, traceparent, webhook) "
-                             "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    Prepared insert(database,
+                    "INSERT INTO jobs (id, state, created_ms, model_format, model_name, "
+                    "options_json, model_bytes, model_sha256, client, weight, turn, "
+                    "owner, most_running, request_id, traceparent, webhook) "
+                    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     insert.bind(1, job.id);
     insert.bind(2, std::string(job_state_name(job.state)));
     insert.bind(3, job.created_ms);
-    insert.bind(4, format_name(job.model_format));
+    insert.bind(4, std::string(model_format_info(job.model_format).name));
     insert.bind(5, job.model_name);
     insert.bind(6, job.options_json);
     insert.bind(7, job.model_bytes);
@@ -341,7 +313,7 @@ InsertOutcome SqliteJobStore::insert(const Job& job,
     Job stored = job;
     stored.sequence = database.getLastInsertRowid();
     if (key) {
-      SQLite::Statement remember(
+      Prepared remember(
           database,
           "INSERT INTO idempotency_keys (owner, key, digest, job_id) VALUES (?, ?, ?, ?)");
       remember.bind(1, key->owner);
@@ -350,6 +322,7 @@ InsertOutcome SqliteJobStore::insert(const Job& job,
       remember.bind(4, job.id);
       remember.exec();
     }
+    impl_->copy_files(job.id, copies);
     transaction.commit();
     impl_->count(job.state, 1, job.model_bytes);
     return {InsertResult::kInserted, stored};
@@ -358,22 +331,21 @@ InsertOutcome SqliteJobStore::insert(const Job& job,
 
 ClientUsage SqliteJobStore::usage(std::string_view client, std::int64_t time_ms) {
   return impl_->read(
-      [&](SQLite::Database& database) { return Impl::usage(database, client, time_ms); });
+      [&](SqliteConnection& database) { return Impl::usage(database, client, time_ms); });
 }
 
 std::optional<Job> SqliteJobStore::claim(std::int64_t time_ms) {
-  return impl_->write([&](SQLite::Database& database) -> std::optional<Job> {
+  return impl_->write_soon_durable([&](SqliteConnection& database) -> std::optional<Job> {
     if (impl_->queued() == 0) return std::nullopt;
-    const Unsynchronised fast(database);
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
-    SQLite::Statement query(database, std::string("SELECT ") + kColumns + kWhoseTurn);
-    if (!query.executeStep()) return std::nullopt;
+    Prepared query(database, std::string("SELECT ") + kJobColumns + kWhoseTurn);
+    if (!query.step()) return std::nullopt;
     Job job = read_job(query);
     job.state = JobState::kRunning;
     job.started_ms = std::max(time_ms, job.created_ms);
     ++job.attempt;
-    SQLite::Statement start(
-        database, "UPDATE jobs SET state = 'running', started_ms = ?, attempt = ? WHERE id = ?");
+    Prepared start(database,
+                   "UPDATE jobs SET state = 'running', started_ms = ?, attempt = ? WHERE id = ?");
     start.bind(1, *job.started_ms);
     start.bind(2, job.attempt);
     start.bind(3, job.id);
@@ -387,20 +359,20 @@ std::optional<Job> SqliteJobStore::claim(std::int64_t time_ms) {
 }
 
 std::optional<InsertOutcome> SqliteJobStore::find_key(const IdempotencyKey& key) {
-  return impl_->read([&](SQLite::Database& database) { return Impl::known_key(database, key); });
+  return impl_->read([&](SqliteConnection& database) { return Impl::known_key(database, key); });
 }
 
 std::optional<Job> SqliteJobStore::find(std::string_view id) {
-  return impl_->read([&](SQLite::Database& database) { return Impl::find(database, id); });
+  return impl_->read([&](SqliteConnection& database) { return Impl::find(database, id); });
 }
 
 std::vector<Job> SqliteJobStore::list(const JobFilter& filter) {
-  std::string sql = std::string("SELECT ") + kColumns + " FROM jobs WHERE sequence < ?";
+  std::string sql = std::string("SELECT ") + kJobColumns + " FROM jobs WHERE sequence < ?";
   if (filter.state) sql += " AND state = ?";
   if (filter.owner) sql += " AND owner = ?";
   sql += " ORDER BY sequence DESC LIMIT " + std::to_string(filter.limit);
-  return impl_->read([&](SQLite::Database& database) {
-    SQLite::Statement query(database, sql);
+  return impl_->read([&](SqliteConnection& database) {
+    Prepared query(database, sql);
     query.bind(1, filter.before_sequence.value_or(std::numeric_limits<std::int64_t>::max()));
     int next = 2;
     if (filter.state) query.bind(next++, std::string(job_state_name(*filter.state)));
@@ -410,20 +382,20 @@ std::vector<Job> SqliteJobStore::list(const JobFilter& filter) {
 }
 
 std::vector<Job> SqliteJobStore::unfinished() {
-  return impl_->read([&](SQLite::Database& database) {
-    SQLite::Statement query(
-        database, std::string("SELECT ") + kColumns +
-                      " FROM jobs WHERE state IN ('queued', 'running') ORDER BY sequence");
+  return impl_->read([&](SqliteConnection& database) {
+    Prepared query(database,
+                   std::string("SELECT ") + kJobColumns +
+                       " FROM jobs WHERE state IN ('queued', 'running') ORDER BY sequence");
     return read_jobs(query);
   });
 }
 
 std::vector<Job> SqliteJobStore::oldest_finished(std::size_t limit) {
-  return impl_->read([&](SQLite::Database& database) {
-    SQLite::Statement query(database, std::string("SELECT ") + kColumns +
-                                          " FROM jobs WHERE finished_clock_ms IS NOT NULL ORDER BY "
-                                          "finished_clock_ms, sequence LIMIT " +
-                                          std::to_string(limit));
+  return impl_->read([&](SqliteConnection& database) {
+    Prepared query(database, std::string("SELECT ") + kJobColumns +
+                                 " FROM jobs WHERE finished_clock_ms IS NOT NULL ORDER BY "
+                                 "finished_clock_ms, sequence LIMIT " +
+                                 std::to_string(limit));
     return read_jobs(query);
   });
 }
@@ -431,7 +403,7 @@ std::vector<Job> SqliteJobStore::oldest_finished(std::size_t limit) {
 std::optional<Job> SqliteJobStore::apply(std::string_view id,
                                          JobEvent event,
                                          const JobChange& change) {
-  return impl_->write([&](SQLite::Database& database) -> std::optional<Job> {
+  auto applied = impl_->write_soon_durable([&](SqliteConnection& database) -> std::optional<Job> {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
     auto job = Impl::find(database, id);
     if (!job) return std::nullopt;
@@ -454,11 +426,11 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
     job->result_bytes = change.result_bytes;
     job->statistics_sha256 = change.statistics_sha256;
 
-    SQLite::Statement update(database,
-                             "UPDATE jobs SET state = ?, started_ms = ?, finished_ms = ?, "
-                             "error_code = ?, error_json = ?, result_bytes = ?, "
-                             "finished_clock_ms = ?, statistics_sha256 = ?, attempt = ? "
-                             "WHERE id = ?");
+    Prepared update(database,
+                    "UPDATE jobs SET state = ?, started_ms = ?, finished_ms = ?, "
+                    "error_code = ?, error_json = ?, result_bytes = ?, "
+                    "finished_clock_ms = ?, statistics_sha256 = ?, attempt = ? "
+                    "WHERE id = ?");
     update.bind(1, std::string(job_state_name(job->state)));
     if (job->started_ms) update.bind(2, *job->started_ms);
     if (job->finished_ms) update.bind(3, *job->finished_ms);
@@ -471,48 +443,89 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
     update.bind(10, job->id);
     update.exec();
     if (is_finished(*next) && !job->webhook.empty()) {
-      SQLite::Statement tell(database,
-                             "INSERT INTO deliveries (job_id, tries, due_ms) VALUES (?, 0, ?)");
+      Prepared tell(database, "INSERT INTO deliveries (job_id, tries, due_ms) VALUES (?, 0, ?)");
       tell.bind(1, job->id);
       tell.bind(2, impl_->clock_ms());
       tell.exec();
     }
+    impl_->copy_files(job->id, change.copies);
     transaction.commit();
     impl_->count(state_before, -1, 0);
     impl_->count(job->state, 1, job->result_bytes - bytes_before);
     return job;
   });
+  if (!change.durable_soon) impl_->wal->reach();
+  return applied;
+}
+
+void SqliteJobStore::make_durable() {
+  impl_->wal->reach();
+}
+
+std::uint64_t SqliteJobStore::copied_bytes() {
+  return impl_->copied_bytes;
+}
+
+std::int64_t SqliteJobStore::newest_copy() {
+  return impl_->write_soon_durable([](SqliteConnection& database) {
+    return database.execAndGet("SELECT COALESCE(MAX(number), 0) FROM file_copies").getInt64();
+  });
+}
+
+std::optional<FileCopy> SqliteJobStore::copy_after(std::int64_t number) {
+  return impl_->read([&](SqliteConnection& database) -> std::optional<FileCopy> {
+    Prepared query(database,
+                   "SELECT number, job_id, name, bytes FROM file_copies WHERE number > ? "
+                   "ORDER BY number LIMIT 1");
+    query.bind(1, number);
+    if (!query.step()) return std::nullopt;
+    return FileCopy{query.column(2).getString(), query.column(3).getString(),
+                    query.column(1).getString(), query.column(0).getInt64()};
+  });
+}
+
+void SqliteJobStore::forget_copies(std::int64_t number) {
+  impl_->write_soon_durable([&](SqliteConnection& database) {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    Prepared forget(database, "DELETE FROM file_copies WHERE number <= ?");
+    forget.bind(1, number);
+    forget.exec();
+    Prepared left(database, "SELECT COALESCE(SUM(LENGTH(bytes)), 0) FROM file_copies");
+    left.step();
+    impl_->copied_bytes = static_cast<std::uint64_t>(left.column(0).getInt64());
+    left.reset();
+    transaction.commit();
+  });
 }
 
 std::optional<std::int64_t> SqliteJobStore::oldest_waiting_ms() {
-  return impl_->read([&](SQLite::Database& database) -> std::optional<std::int64_t> {
-    SQLite::Statement query(
-        database, "SELECT created_ms FROM jobs WHERE state = 'queued' ORDER BY sequence LIMIT 1");
-    if (!query.executeStep()) return std::nullopt;
-    return query.getColumn(0).getInt64();
+  return impl_->read([&](SqliteConnection& database) -> std::optional<std::int64_t> {
+    Prepared query(database,
+                   "SELECT created_ms FROM jobs WHERE state = 'queued' ORDER BY sequence LIMIT 1");
+    if (!query.step()) return std::nullopt;
+    return query.column(0).getInt64();
   });
 }
 
 std::vector<Job> SqliteJobStore::spent_models(std::int64_t before_clock_ms, std::size_t limit) {
-  return impl_->read([&](SQLite::Database& database) {
-    SQLite::Statement query(
-        database, std::string("SELECT ") + kColumns +
-                      " FROM jobs INDEXED BY jobs_with_spent_models WHERE state IN ('failed', "
-                      "'cancelled') AND model_kept = 1 AND finished_clock_ms < ? ORDER BY "
-                      "finished_clock_ms LIMIT " +
-                      std::to_string(limit));
+  return impl_->read([&](SqliteConnection& database) {
+    Prepared query(database,
+                   std::string("SELECT ") + kJobColumns +
+                       " FROM jobs INDEXED BY jobs_with_spent_models WHERE state IN ('failed', "
+                       "'cancelled') AND model_kept = 1 AND finished_clock_ms < ? ORDER BY "
+                       "finished_clock_ms LIMIT " +
+                       std::to_string(limit));
     query.bind(1, before_clock_ms);
     return read_jobs(query);
   });
 }
 
 void SqliteJobStore::forget_model(std::string_view id) {
-  impl_->write([&](SQLite::Database& database) {
+  impl_->write([&](SqliteConnection& database) {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
     const auto job = Impl::find(database, id);
     if (!job || !job->model_kept) return;
-    SQLite::Statement update(database,
-                             "UPDATE jobs SET model_kept = 0, model_bytes = 0 WHERE id = ?");
+    Prepared update(database, "UPDATE jobs SET model_kept = 0, model_bytes = 0 WHERE id = ?");
     update.bind(1, std::string(id));
     update.exec();
     transaction.commit();
@@ -521,18 +534,17 @@ void SqliteJobStore::forget_model(std::string_view id) {
 }
 
 std::optional<Delivery> SqliteJobStore::claim_delivery(std::chrono::milliseconds patience) {
-  return impl_->write([&](SQLite::Database& database) -> std::optional<Delivery> {
+  return impl_->write([&](SqliteConnection& database) -> std::optional<Delivery> {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::DEFERRED);
-    SQLite::Statement query(
-        database,
-        "SELECT d.job_id, j.webhook, d.tries FROM deliveries AS d JOIN jobs AS j "
-        "ON j.id = d.job_id WHERE d.due_ms <= ? ORDER BY d.due_ms LIMIT 1");
+    Prepared query(database,
+                   "SELECT d.job_id, j.webhook, d.tries FROM deliveries AS d JOIN jobs AS j "
+                   "ON j.id = d.job_id WHERE d.due_ms <= ? ORDER BY d.due_ms LIMIT 1");
     query.bind(1, impl_->clock_ms());
-    if (!query.executeStep()) return std::nullopt;
-    Delivery delivery{query.getColumn(0).getString(), query.getColumn(1).getString(),
-                      query.getColumn(2).getInt()};
+    if (!query.step()) return std::nullopt;
+    Delivery delivery{query.column(0).getString(), query.column(1).getString(),
+                      query.column(2).getInt()};
     query.reset();
-    SQLite::Statement update(database, "UPDATE deliveries SET due_ms = ? WHERE job_id = ?");
+    Prepared update(database, "UPDATE deliveries SET due_ms = ? WHERE job_id = ?");
     update.bind(1, impl_->clock_ms() + patience.count());
     update.bind(2, delivery.job_id);
     update.exec();
@@ -542,8 +554,8 @@ std::optional<Delivery> SqliteJobStore::claim_delivery(std::chrono::milliseconds
 }
 
 void SqliteJobStore::delivered(std::string_view job_id) {
-  impl_->write([&](SQLite::Database& database) {
-    SQLite::Statement done(database, "DELETE FROM deliveries WHERE job_id = ?");
+  impl_->write([&](SqliteConnection& database) {
+    Prepared done(database, "DELETE FROM deliveries WHERE job_id = ?");
     done.bind(1, std::string(job_id));
     done.exec();
   });
@@ -552,9 +564,9 @@ void SqliteJobStore::delivered(std::string_view job_id) {
 void SqliteJobStore::delivery_failed(std::string_view job_id,
                                      std::optional<std::chrono::milliseconds> pause) {
   if (!pause) return delivered(job_id);
-  impl_->write([&](SQLite::Database& database) {
-    SQLite::Statement again(database,
-                            "UPDATE deliveries SET tries = tries + 1, due_ms = ? WHERE job_id = ?");
+  impl_->write([&](SqliteConnection& database) {
+    Prepared again(database,
+                   "UPDATE deliveries SET tries = tries + 1, due_ms = ? WHERE job_id = ?");
     again.bind(1, impl_->clock_ms() + pause->count());
     again.bind(2, std::string(job_id));
     again.exec();
@@ -562,23 +574,22 @@ void SqliteJobStore::delivery_failed(std::string_view job_id,
 }
 
 void SqliteJobStore::count_lost_worker(std::string_view id) {
-  impl_->write([&](SQLite::Database& database) {
-    SQLite::Statement update(database,
-                             "UPDATE jobs SET lost_workers = lost_workers + 1 WHERE id = ?");
+  impl_->write([&](SqliteConnection& database) {
+    Prepared update(database, "UPDATE jobs SET lost_workers = lost_workers + 1 WHERE id = ?");
     update.bind(1, std::string(id));
     update.exec();
   });
 }
 
 bool SqliteJobStore::erase(std::string_view id) {
-  return impl_->write([&](SQLite::Database& database) {
+  return impl_->write([&](SqliteConnection& database) {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
     const auto job = Impl::find(database, id);
     if (!job) return false;
-    SQLite::Statement erase(database, "DELETE FROM jobs WHERE id = ?");
+    Prepared erase(database, "DELETE FROM jobs WHERE id = ?");
     erase.bind(1, std::string(id));
     erase.exec();
-    SQLite::Statement remember(database, "INSERT OR IGNORE INTO erased (id) VALUES (?)");
+    Prepared remember(database, "INSERT OR IGNORE INTO erased (id) VALUES (?)");
     remember.bind(1, std::string(id));
     remember.exec();
     transaction.commit();
@@ -588,22 +599,22 @@ bool SqliteJobStore::erase(std::string_view id) {
 }
 
 bool SqliteJobStore::was_erased(std::string_view id) {
-  return impl_->read([&](SQLite::Database& database) {
-    SQLite::Statement query(database, "SELECT 1 FROM erased WHERE id = ?");
+  return impl_->read([&](SqliteConnection& database) {
+    Prepared query(database, "SELECT 1 FROM erased WHERE id = ?");
     query.bind(1, std::string(id));
-    return query.executeStep();
+    return query.step();
   });
 }
 
 std::int64_t SqliteJobStore::tidy(std::int64_t mark) {
-  return impl_->write([&](SQLite::Database& database) {
+  return impl_->write([&](SqliteConnection& database) {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
-    SQLite::Statement forget(database, "DELETE FROM erased WHERE rowid <= ?");
+    Prepared forget(database, "DELETE FROM erased WHERE rowid <= ?");
     forget.bind(1, mark);
     forget.exec();
     // Days that no limit looks at any more.
     constexpr std::int64_t kDaysKept = 40;
-    SQLite::Statement old(database, "DELETE FROM key_usage WHERE day < ?");
+    Prepared old(database, "DELETE FROM key_usage WHERE day < ?");
     old.bind(1, day_of(impl_->clocks.wall()) - kDaysKept);
     old.exec();
     impl_->note_clock();
@@ -624,13 +635,14 @@ StoreTotals SqliteJobStore::totals() {
 }
 
 void SqliteJobStore::check_health() {
-  impl_->read([](SQLite::Database& database) {
+  impl_->read([](SqliteConnection& database) {
     static_cast<void>(database.execAndGet("SELECT COUNT(*) FROM (SELECT 1 FROM jobs LIMIT 1)"));
   });
   std::unique_lock lock(impl_->writing, kHealthPatience);
   if (!lock) throw StoreError(StoreError::Kind::kBusy, "writes to the job database do not end");
+  const Committed committed(*impl_->wal);
   translate_sqlite_errors([&] {
-    SQLite::Database& database = impl_->database;
+    SqliteConnection& database = impl_->database;
     // Whoever asks wants to know now, not to wait until it is well again.
     database.setBusyTimeout(0);
     try {
@@ -643,6 +655,8 @@ void SqliteJobStore::check_health() {
     }
     database.setBusyTimeout(kSqliteBusyPatienceMs);
   });
+  lock.unlock();
+  impl_->wal->reach();
 }
 
 }  // namespace symcell::server

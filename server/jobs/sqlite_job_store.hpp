@@ -30,9 +30,17 @@ class SqliteJobStore final : public JobStore {
                           MachineClocks clocks = {});
   ~SqliteJobStore() override;
 
+  using JobStore::insert;
   InsertOutcome insert(const Job& job,
                        const std::optional<IdempotencyKey>& key,
-                       const Admission& admission) override;
+                       const Admission& admission,
+                       const std::vector<FileCopy>& copies) override;
+  void make_durable() override;
+  [[nodiscard]] bool keeps_copies() const override { return true; }
+  [[nodiscard]] std::uint64_t copied_bytes() override;
+  [[nodiscard]] std::int64_t newest_copy() override;
+  [[nodiscard]] std::optional<FileCopy> copy_after(std::int64_t number) override;
+  void forget_copies(std::int64_t number) override;
   [[nodiscard]] std::optional<InsertOutcome> find_key(const IdempotencyKey& key) override;
   [[nodiscard]] std::optional<Job> find(std::string_view id) override;
   [[nodiscard]] std::vector<Job> list(const JobFilter& filter) override;

@@ -125,6 +125,15 @@ CREATE TABLE deliveries (
 ) STRICT;
 CREATE INDEX deliveries_by_time ON deliveries (due_ms);
 )sql",
+    // Small files until they are synchronised.
+    R"sql(
+CREATE TABLE file_copies (
+  number INTEGER PRIMARY KEY,
+  job_id TEXT NOT NULL,
+  name TEXT NOT NULL,
+  bytes BLOB NOT NULL
+) STRICT;
+)sql",
 };
 
 DatabaseFinding examine(SQLite::Database& database) {

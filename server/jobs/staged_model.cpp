@@ -20,7 +20,11 @@ std::optional<std::string> staged_job(std::string_view folder_name) {
 
 void settle_model(const JobFiles& files, std::string_view id) {
   // Not synchronised: a start finds the folder by either name.
-  std::filesystem::rename(staged_folder(files, id), files.model(id).parent_path());
+  std::error_code error;
+  std::filesystem::rename(staged_folder(files, id), files.model(id).parent_path(), error);
+  if (!error || std::filesystem::exists(files.model(id))) return;
+  throw std::filesystem::filesystem_error("the model cannot be given its name",
+                                          files.model(id).parent_path(), error);
 }
 
 void discard_staged(const JobFiles& files, std::string_view id) noexcept {

@@ -17,7 +17,8 @@ namespace symcell::server {
 // The job whose staged folder has this name; nullopt: it is none.
 [[nodiscard]] std::optional<std::string> staged_job(std::string_view folder_name);
 
-// The row is written: gives the folder its name.
+// The row is written: gives the folder its name. Whoever accepts a job and whoever runs it may both do so: the
+// one is not sure to come before the other.
 void settle_model(const JobFiles& files, std::string_view id);
 // There will be no row.
 void discard_staged(const JobFiles& files, std::string_view id) noexcept;

@@ -60,8 +60,25 @@ auto WatchedJobStore::watched(std::string_view operation, bool writes, const Wor
 
 InsertOutcome WatchedJobStore::insert(const Job& job,
                                       const std::optional<IdempotencyKey>& key,
-                                      const Admission& admission) {
-  return watched("insert", true, [&] { return store_->insert(job, key, admission); });
+                                      const Admission& admission,
+                                      const std::vector<FileCopy>& copies) {
+  return watched("insert", true, [&] { return store_->insert(job, key, admission, copies); });
+}
+
+void WatchedJobStore::make_durable() {
+  watched("make_durable", true, [&] { store_->make_durable(); });
+}
+
+std::int64_t WatchedJobStore::newest_copy() {
+  return watched("newest_copy", false, [&] { return store_->newest_copy(); });
+}
+
+std::optional<FileCopy> WatchedJobStore::copy_after(std::int64_t number) {
+  return watched("copy_after", false, [&] { return store_->copy_after(number); });
+}
+
+void WatchedJobStore::forget_copies(std::int64_t number) {
+  watched("forget_copies", true, [&] { store_->forget_copies(number); });
 }
 
 ClientUsage WatchedJobStore::usage(std::string_view client, std::int64_t time_ms) {

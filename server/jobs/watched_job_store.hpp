@@ -17,9 +17,17 @@ class WatchedJobStore final : public JobStore {
   // Counts symcell_store_errors_total; declares it. Both must outlive the store.
   WatchedJobStore(std::unique_ptr<JobStore> store, Metrics& metrics, Logger& logger);
 
+  using JobStore::insert;
   InsertOutcome insert(const Job& job,
                        const std::optional<IdempotencyKey>& key,
-                       const Admission& admission) override;
+                       const Admission& admission,
+                       const std::vector<FileCopy>& copies) override;
+  void make_durable() override;
+  [[nodiscard]] bool keeps_copies() const override { return store_->keeps_copies(); }
+  [[nodiscard]] std::uint64_t copied_bytes() override { return store_->copied_bytes(); }
+  [[nodiscard]] std::int64_t newest_copy() override;
+  [[nodiscard]] std::optional<FileCopy> copy_after(std::int64_t number) override;
+  void forget_copies(std::int64_t number) override;
   [[nodiscard]] std::optional<InsertOutcome> find_key(const IdempotencyKey& key) override;
   [[nodiscard]] std::optional<Job> find(std::string_view id) override;
   [[nodiscard]] std::vector<Job> list(const JobFilter& filter) override;
@@ -31,7 +39,9 @@ class WatchedJobStore final : public JobStore {
   [[nodiscard]] std::vector<RunOrder> keep(const std::vector<RunState>& runs) override;
   std::size_t rescue() override;
   void request_cancel(std::string_view id) override;
-  void listen(std::function<void()> changed) override { store_->listen(std::move(changed)); }
+  void listen(const std::function<void(std::string_view id)>& changed) override {
+    store_->listen(changed);
+  }
   [[nodiscard]] std::optional<std::int64_t> oldest_waiting_ms() override;
   [[nodiscard]] std::vector<Job> spent_models(std::int64_t before_clock_ms,
                                               std::size_t limit) override;

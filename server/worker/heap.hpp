@@ -13,10 +13,10 @@ void prepare_heap();
 
 // Sets aside addresses (no memory) for the heap to grow into on huge pages, where the system has them.
 // `limit_bytes`: what the process may use (apply_limits), 0: no limit. Call it before work begins, and
-// again after release_heap.
+// again before each request: a heap that was kept is reserved anew only for another limit.
 void reserve_heap(std::uint64_t limit_bytes);
 
-// Gives what is free back to the system.
+// Between requests: gives what is free back to the system if the process has grown.
 void release_heap();
 
 }  // namespace symcell::server

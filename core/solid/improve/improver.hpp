@@ -55,6 +55,7 @@ class Improver {
   };
   [[nodiscard]] Result<void> work_on_worst(double goal, Means means);
   [[nodiscard]] bool is_hopeless(TetId t) const;
+  [[nodiscard]] bool is_restless(TetId t) const;
   void note_changes();
   [[nodiscard]] std::vector<VertexId> vertices_in_order() const;
   [[nodiscard]] bool merge(VertexId v, double floor, Surgery::Bounds bounds);
@@ -80,6 +81,7 @@ class Improver {
   std::uint64_t steps_ = 0;
   std::vector<GivenUp> given_up_;
   std::vector<std::uint64_t> changed_;
+  std::vector<std::uint32_t> changes_;  // per vertex, of tetrahedra at it, in this round
   std::vector<TetId> touched_;  // by the last change
   double detour_goal_ = -1;
   std::uint64_t detours_left_ = 0;

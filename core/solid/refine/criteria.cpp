@@ -48,6 +48,25 @@ Criteria::Criteria(const InitialTetrahedralization& solid, const MeshOptions& op
   find_sharp_vertices(solid.mesh, solid.tessellated);
 }
 
+namespace {
+
+// A cube that holds all copies of the mesh: its middle, on the axis, and half its side.
+std::pair<Point3, double> cube_about(const QuotientTetrahedralization& mesh) {
+  double radius = 0, low = kInfinity, high = -kInfinity;
+  for (TetId t = 0; t < mesh.tet_slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    for (int i = 0; i < 4; ++i) {
+      const Point3 p = mesh.corner_point(t, i);
+      radius = std::max(radius, std::hypot(p.x, p.y));
+      low = std::min(low, p.z);
+      high = std::max(high, p.z);
+    }
+  }
+  return {Point3{0, 0, (low + high) / 2}, std::max(radius, (high - low) / 2)};
+}
+
+}  // namespace
+
 void Criteria::find_sizes(const InitialTetrahedralization& solid, const MeshOptions& options) {
   for (const SizeRequest& s : options.sizes) {
     if (s.kind != SizeRequest::Kind::kRegion) continue;
@@ -57,10 +76,13 @@ void Criteria::find_sizes(const InitialTetrahedralization& solid, const MeshOpti
       region_edges2_[i] = std::min(region_edges2_[i], s.size * s.size * (1 - kBoundSafety));
     }
   }
-  if (solid.sizes) sizes_.push_back(solid.sizes);
-  if (!std::isfinite(options.gradation)) return;
-  // Away from short segments, too.
+  const bool graded = std::isfinite(options.gradation);
+  if (!solid.sizes && !graded) return;
   const QuotientTetrahedralization& mesh = solid.mesh;
+  const auto [centre, half] = cube_about(mesh);
+  if (solid.sizes) sizes_.emplace_back(solid.sizes, centre, half);
+  if (!graded) return;
+  // Away from short segments, too.
   std::vector<SizeSource> sources;
   for (TetId t = 0; t < mesh.tet_slots(); ++t) {
     if (!mesh.alive(t)) continue;
@@ -71,7 +93,8 @@ void Criteria::find_sizes(const InitialTetrahedralization& solid, const MeshOpti
       sources.push_back({{a, b, b}, distance(a, b)});
     }
   }
-  sizes_.push_back(std::make_shared<const SizeField>(sources, options.gradation, mesh.fold()));
+  sizes_.emplace_back(std::make_shared<const SizeField>(sources, options.gradation, mesh.fold()),
+                      centre, half);
 }
 
 double Criteria::size_excess2(const TetMeasures& m, std::int32_t region) const {
@@ -80,13 +103,13 @@ double Criteria::size_excess2(const TetMeasures& m, std::int32_t region) const {
   if (!region_edges2_.empty()) {
     bound2 = std::min(bound2, region_edges2_[static_cast<std::size_t>(region)]);
   }
-  for (const auto& sizes : sizes_) {
-    const double least = sizes->least() * (1 - kBoundSafety);
+  for (SizeLookup& sizes : sizes_) {
+    const double least = sizes.least() * (1 - kBoundSafety);
     // Most tetrahedra are smaller than any bound.
     if (m.longest2 <= least * least || least * least >= bound2) continue;
     // What is allowed leaves the other bounds to decide.
     const double longest = std::sqrt(m.longest2) / (1 - kBoundSafety);
-    const double allowed = sizes->max_edge(m.middle, longest);
+    const double allowed = sizes.max_edge(m.middle, longest);
     if (allowed >= longest) continue;
     const double length = allowed * (1 - kBoundSafety);
     bound2 = std::min(bound2, length * length);

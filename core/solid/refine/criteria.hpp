@@ -21,6 +21,7 @@
 #include "core/model/mesh_options.hpp"
 #include "core/solid/initial/initial_tetrahedralization.hpp"
 #include "core/solid/quotient/quotient_tetrahedralization.hpp"
+#include "core/solid/sizes/size_lookup.hpp"
 
 namespace symcell::solid {
 
@@ -95,12 +96,12 @@ class Criteria {
   double max_edge2_;
   double min_edge_;
   bool narrow_;
-  std::vector<double> max_volumes_;    // per region
-  std::vector<double> region_edges2_;  // per region; empty: none has a bound of its own
-  std::vector<std::shared_ptr<const SizeField>> sizes_;  // from place to place
-  std::vector<std::uint8_t> sharp_segments_;             // per segment
-  std::vector<std::uint8_t> sharp_vertices_;             // per vertex of the first mesh
-  std::vector<std::uint8_t> acute_vertices_;             // likewise
+  std::vector<double> max_volumes_;           // per region
+  std::vector<double> region_edges2_;         // per region; empty: none has a bound of its own
+  mutable std::vector<SizeLookup> sizes_;     // from place to place; remembers what was asked
+  std::vector<std::uint8_t> sharp_segments_;  // per segment
+  std::vector<std::uint8_t> sharp_vertices_;  // per vertex of the first mesh
+  std::vector<std::uint8_t> acute_vertices_;  // likewise
 };
 
 }  // namespace symcell::solid

@@ -118,38 +118,77 @@ double SizeField::allowed(double size, double distance) const {
   return size + slope_ * std::max(0.0, distance - kPlateau * size);
 }
 
-double SizeField::bound_of(const Node& node, Point3 p) const {
+double SizeField::distance_to(std::int32_t source, Point3 p) const {
+  const SizeSource& s = sources_[at(source)];
+  return distance(p, closest_point(p, s.place[0], s.place[1], s.place[2]));
+}
+
+double SizeField::allowed_by(std::int32_t source, Point3 p) const {
+  return allowed(sources_[at(source)].size, distance_to(source, p));
+}
+
+double SizeField::bound_of(const Node& node, Point3 p, double farther) const {
   const double dx = std::max({node.low.x - p.x, 0.0, p.x - node.high.x});
   const double dy = std::max({node.low.y - p.y, 0.0, p.y - node.high.y});
   const double dz = std::max({node.low.z - p.z, 0.0, p.z - node.high.z});
-  const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
+  const double distance = std::sqrt(dx * dx + dy * dy + dz * dz) + farther;
   // A larger size has a wider plateau, but never allows less: of those in the node the least decides
   // as long as growth is no faster than two to one; beyond, only that no source allows less than it is.
   return slope_ * kPlateau <= 1 ? allowed(node.least, distance) : node.least;
 }
 
-void SizeField::look_at(std::int32_t id, Point3 p, double& best) const {
+void SizeField::look_at(std::int32_t id, Point3 p, double farther, double& best) const {
   const Node& node = nodes_[at(id)];
   if (node.right == 0) {
     for (std::int32_t i = node.first; i < node.last; ++i) {
-      const SizeSource& s = sources_[at(i)];
-      if (s.size >= best) continue;
-      const Point3 near = closest_point(p, s.place[0], s.place[1], s.place[2]);
-      best = std::min(best, allowed(s.size, distance(p, near)));
+      const double size = sources_[at(i)].size;
+      if (size < best) best = std::min(best, allowed(size, distance_to(i, p) + farther));
     }
     return;
   }
-  std::pair<double, std::int32_t> near{bound_of(nodes_[at(id + 1)], p), id + 1};
-  std::pair<double, std::int32_t> far{bound_of(nodes_[at(node.right)], p), node.right};
+  std::pair<double, std::int32_t> near{bound_of(nodes_[at(id + 1)], p, farther), id + 1};
+  std::pair<double, std::int32_t> far{bound_of(nodes_[at(node.right)], p, farther), node.right};
   if (far < near) std::swap(near, far);
-  if (near.first < best) look_at(near.second, p, best);
-  if (far.first < best) look_at(far.second, p, best);
+  if (near.first < best) look_at(near.second, p, farther, best);
+  if (far.first < best) look_at(far.second, p, farther, best);
+}
+
+double SizeField::smallest(Point3 p, double farther) const {
+  double best = kNone;
+  if (!nodes_.empty()) look_at(0, p, farther, best);
+  return best;
+}
+
+bool SizeField::list_within(
+    Point3 c, double reach, double most, std::size_t limit, std::vector<std::int32_t>& list) const {
+  if (nodes_.empty()) return true;
+  const std::size_t before = list.size();
+  std::vector<std::int32_t> open{0};
+  while (!open.empty()) {
+    const std::int32_t id = open.back();
+    open.pop_back();
+    const Node& node = nodes_[at(id)];
+    if (bound_of(node, c, -reach) >= most) continue;
+    if (node.right != 0) {
+      open.push_back(node.right);
+      open.push_back(id + 1);
+      continue;
+    }
+    for (std::int32_t i = node.first; i < node.last; ++i) {
+      if (allowed(sources_[at(i)].size, distance_to(i, c) - reach) < most) list.push_back(i);
+    }
+    if (list.size() - before > limit) return false;
+  }
+  return true;
+}
+
+Point3 SizeField::in_first_sector(Point3 p) const {
+  return rotations_.rotate(p, rotations_.reduce(-std::int64_t{sector_of(p)}));
 }
 
 double SizeField::max_edge(Point3 p, double enough) const {
   double best = enough;
-  if (nodes_.empty()) return best;
-  look_at(0, rotations_.rotate(p, rotations_.reduce(-std::int64_t{sector_of(p)})), best);
+  if (!nodes_.empty()) look_at(0, in_first_sector(p), 0, best);
   return best;
 }
 

@@ -44,6 +44,22 @@ class SizeField {
   // where it is.
   [[nodiscard]] double max_edge(Point3 p, double enough) const;
   [[nodiscard]] double least() const { return nodes_.empty() ? kNone : nodes_.front().least; }
+  // Growth of what is allowed over a distance.
+  [[nodiscard]] double slope() const { return slope_; }
+
+  // For those who ask about all places within `reach` of c at once, in the first sector:
+  [[nodiscard]] Point3 in_first_sector(Point3 p) const;
+  // No place there allows more, or less.
+  [[nodiscard]] double most_within(Point3 c, double reach) const { return smallest(c, reach); }
+  [[nodiscard]] double least_within(Point3 c, double reach) const { return smallest(c, -reach); }
+  // Appends the sources that allow less than `most` at some place there. False, with some of them: there
+  // are more than `limit`.
+  [[nodiscard]] bool list_within(Point3 c,
+                                 double reach,
+                                 double most,
+                                 std::size_t limit,
+                                 std::vector<std::int32_t>& list) const;
+  [[nodiscard]] double allowed_by(std::int32_t source, Point3 p) const;
 
  private:
   static constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -60,8 +76,12 @@ class SizeField {
   [[nodiscard]] std::int32_t sector_of(Point3 p) const;
   std::int32_t build(std::int32_t first, std::int32_t last);
   [[nodiscard]] double allowed(double size, double distance) const;
-  [[nodiscard]] double bound_of(const Node& node, Point3 p) const;
-  void look_at(std::int32_t id, Point3 p, double& best) const;
+  [[nodiscard]] double distance_to(std::int32_t source, Point3 p) const;
+  // No source of the node allows less at a place whose distance to it is `farther` than that of p.
+  [[nodiscard]] double bound_of(const Node& node, Point3 p, double farther) const;
+  // Smallest of what the sources would allow if they were `farther` from p, or nearer.
+  [[nodiscard]] double smallest(Point3 p, double farther) const;
+  void look_at(std::int32_t id, Point3 p, double farther, double& best) const;
 
   RotationTable rotations_;
   double slope_;

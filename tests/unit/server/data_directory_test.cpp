@@ -89,6 +89,7 @@ class DataDirectoryTest : public ::testing::Test {
     id_ = service_.submit().job.id;
     ASSERT_TRUE(service_.reaches(id_, JobState::kSucceeded));
     cell_ = read_file(service_.jobs->files().cell(id_));
+    service_.forget_copies();
     ASSERT_TRUE(service_.close());
   }
   [[nodiscard]] fs::path root() const { return service_.folder.path(); }

@@ -81,6 +81,7 @@ TEST_F(JobRestartTest, AJobWithoutItsModelFails) {
   ASSERT_TRUE(service_.reaches(running, JobState::kRunning));
   const std::string id = service_.submit().job.id;
   const auto model = service_.jobs->files().model(id);
+  service_.forget_copies();
   ASSERT_TRUE(service_.close());
   std::filesystem::remove(model);
   service_.open();

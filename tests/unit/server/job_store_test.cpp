@@ -317,7 +317,7 @@ TEST_P(SharedJobStoreTest, ServersThatClaimAtOnceGetDifferentJobs) {
 TEST_P(SharedJobStoreTest, OthersHearOfChanges) {
   const auto other = another();
   std::atomic<int> heard{0};
-  other->listen([&] { ++heard; });
+  other->listen([&](std::string_view) { ++heard; });
   const auto until = [&](int least) {
     for (int i = 0; i < 500 && heard < least; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));

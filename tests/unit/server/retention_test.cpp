@@ -52,7 +52,7 @@ TEST_F(RetentionTest, ModelsOfJobsWithoutAResultGoBeforeTheirJobs) {
     steady_ = id == std::string("late") ? 90 * kHourMs : 0;
     store_.apply(id, JobEvent::kFail, {.time_ms = 1});
     symcell::test::write_file(folder_ / (std::string("arrived") + id), "model");
-    files_.adopt_model(folder_ / (std::string("arrived") + id), id);
+    files_.adopt_model(folder_ / (std::string("arrived") + id), id, true);
     settle_model(files_, id);
   }
   steady_ = 100 * kHourMs;

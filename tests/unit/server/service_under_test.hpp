@@ -1,7 +1,9 @@
 // A job service with a stub engine, without HTTP.
 #pragma once
 
+#include <cstdint>
 #include <fstream>
+#include <limits>
 #include <memory>
 
 #include "server/base/files.hpp"
@@ -28,6 +30,11 @@ class ServiceUnderTest {
     const bool joined = jobs->finish_stop(std::chrono::milliseconds(0));
     jobs.reset();
     return joined;
+  }
+
+  // As if all files had been synchronised: what is lost from now on stays lost.
+  void forget_copies() const {
+    jobs->store().forget_copies(std::numeric_limits<std::int64_t>::max());
   }
 
   SubmitOutcome submit(const std::string& key = "",

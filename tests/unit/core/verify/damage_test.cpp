@@ -143,6 +143,26 @@ TEST(VerifyDamage, GoodCubesPass) {
   }
 }
 
+// A lid of no thickness on a pocket bounds nothing; the pocket's own walls do.
+TEST(VerifyDamage, WallsOfNoThickness) {
+  const Blocks pocketed = all_blocks({3, 3, 3}, {{1, 1, 2}});
+  TriangleSurface surface = test::cube_surface(pocketed);
+  const std::array<Point3, 4> lid = {{{1, 1, 3}, {2, 1, 3}, {2, 2, 3}, {1, 2, 3}}};
+  const auto first = static_cast<std::int32_t>(surface.vertices.size());
+  surface.vertices.insert(surface.vertices.end(), lid.begin(), lid.end());
+  for (const std::array<std::int32_t, 3>& t :
+       {std::array<std::int32_t, 3>{0, 1, 2}, {0, 2, 3}, {0, 2, 1}, {0, 3, 2}}) {
+    surface.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  const Model model = std::move(surface);
+  expect_good(test::cube_mesh(pocketed), model);
+  // What else is missing is found.
+  expect_found("model.on_surface", test::cube_mesh(all_blocks({3, 3, 3}, {{1, 1, 2}, {0, 0, 0}})),
+               &model);
+  expect_found("model.covered", test::cube_mesh(all_blocks({3, 3, 3}, {{1, 1, 2}, {0, 0, 0}})),
+               &model);
+}
+
 // The model's own pinches exempt those of the mesh; nothing else does.
 TEST(VerifyDamage, PinchesThatTheModelHasNot) {
   const MeshData squares = test::square_mesh(kEdgePair);

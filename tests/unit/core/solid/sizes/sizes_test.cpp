@@ -12,6 +12,7 @@
 #include "core/geometry/triangle_tree.hpp"
 #include "core/mesh_model.hpp"
 #include "core/solid/sizes/size_field.hpp"
+#include "core/solid/sizes/size_lookup.hpp"
 #include "core/solid/sizes/size_sources.hpp"
 #include "core/solid/sizes/wall_sizes.hpp"
 #include "tests/support/plc_builders.hpp"
@@ -21,6 +22,7 @@ namespace symcell {
 namespace {
 
 using solid::SizeField;
+using solid::SizeLookup;
 using solid::SizeSource;
 
 TEST(SizeField, IsTheSmallestThatAnyCopyAllows) {
@@ -40,8 +42,9 @@ TEST(SizeField, IsTheSmallestThatAnyCopyAllows) {
         sources.push_back({{a, near(), near()}, 0.05 + 0.5 * std::abs(in(random))});
       }
       const SizeField field(sources, gradation, fold);
+      SizeLookup lookup(std::make_shared<const SizeField>(field), {0, 0, 0}, 2.5);
       const RotationTable rotations(fold);
-      for (int i = 0; i < 100; ++i) {
+      for (int i = 0; i < 400; ++i) {
         const Point3 p = point();
         double wanted = kInfinity;
         for (const SizeSource& s : sources) {
@@ -52,6 +55,8 @@ TEST(SizeField, IsTheSmallestThatAnyCopyAllows) {
           }
         }
         EXPECT_NEAR(field.max_edge(p), wanted, 1e-9) << fold << ", " << gradation;
+        EXPECT_NEAR(lookup.max_edge(p, kInfinity), wanted, 1e-9) << fold << ", " << gradation;
+        EXPECT_EQ(lookup.max_edge(p, 0.5 * wanted), 0.5 * wanted);
       }
     }
   }
@@ -80,6 +85,27 @@ TEST(SizeField, TheFirstSectorOfAFaceStandsForAll) {
         const Point3 p{r * std::cos(turn), r * std::sin(turn), 3 * in(random)};
         EXPECT_NEAR(one.max_edge(p), all.max_edge(p), 1e-9) << fold;
       }
+    }
+  }
+}
+
+// Crowds of sources: of one size, and of many.
+TEST(SizeLookup, IsTheFieldWhereSourcesCrowd) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> in(-1, 1);
+  for (const double spread : {0.0, 0.2}) {
+    std::vector<SizeSource> sources;
+    for (int i = 0; i < 3000; ++i) {
+      const Point3 a{in(random), in(random), 0};
+      sources.push_back({{a, a, a}, 0.2 + spread * std::abs(in(random))});
+    }
+    const auto field = std::make_shared<const SizeField>(sources, 1.5, 5);
+    SizeLookup lookup(field, {0, 0, 0}, 3);
+    for (int i = 0; i < 2000; ++i) {
+      const Point3 p{2 * in(random), 2 * in(random), 4 * in(random)};
+      const double wanted = field->max_edge(p);
+      EXPECT_NEAR(lookup.max_edge(p, kInfinity), wanted, 1e-9);
+      EXPECT_NEAR(lookup.max_edge(p, 1.1 * wanted), wanted, 1e-9);
     }
   }
 }
