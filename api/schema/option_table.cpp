@@ -631,6 +631,11 @@ constexpr auto kRows = std::to_array<OptionRow>({
     {{"order", "1|2", "1", "1: linear elements; 2: quadratic, with mid-side nodes", kAll},
      set_order,
      get_member<&MeshOptions::order>},
+    flag_row<&MeshOptions::curved>(
+        {"curved", "true|false", "true",
+         "surfaces: the boundary lies on the planes, cylinders, cones, spheres and tori that faces "
+         "are; of STEP and IGES vertices, of order 2 mid-side nodes, too",
+         kSolids}),
     {{"max_elements", "N", "50000000", "give up beyond this many elements of the cell", kAll},
      set_max_elements,
      get_member<&MeshOptions::max_elements>},

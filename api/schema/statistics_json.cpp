@@ -206,6 +206,15 @@ Json statistics_to_json(const Statistics& statistics, const MeshOptions& options
                       {"max_edge", target.max_edge > 0 ? Json(target.max_edge) : Json(nullptr)},
                       {"meshes", target.meshes}};
   }
+  if (const std::optional<Curving>& c = statistics.curving) {
+    json["curved"] = {{"faces", c->faces},
+                      {"other_faces", c->other_faces},
+                      {"vertices", c->vertices},
+                      {"left", c->left},
+                      {"sides", c->sides},
+                      {"straightened", c->straightened},
+                      {"farthest", number(c->farthest)}};
+  }
   json["warnings"] = warnings_to_json(statistics.warnings);
   if (!is_planar(kind)) {
     json["delaunay"] = statistics.delaunay;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/cell/full_mesh.hpp"
+#include "core/geometry/quadratic_tet.hpp"
 #include "core/geometry/tet_figures.hpp"
 
 namespace symcell {
@@ -103,7 +104,15 @@ void measure_cell_3(const SymmetryCellMesh& cell, Statistics& statistics) {
     for (std::size_t i = 0; i < 4; ++i)
       p[i] = place[static_cast<std::size_t>(cell.elements[at + i])];
     const TetFigures f = tet_figures(p);
-    c.measure += f.volume;
+    if (cell.order == 2) {
+      QuadraticTet q;
+      for (std::size_t i = 0; i < 10; ++i) {
+        q[i] = place[static_cast<std::size_t>(cell.elements[at + i])];
+      }
+      c.measure += volume_of(jacobian_coefficients(q));
+    } else {
+      c.measure += f.volume;
+    }
     c.max_radius_edge = std::max(c.max_radius_edge, f.radius_edge);
     ++c.aspect_ratio_histogram[aspect_bin(f.aspect)];
     worst.face_cot_max = std::max(worst.face_cot_max, f.face_cot_max);

@@ -7,30 +7,29 @@
 #include <tuple>
 
 #include "core/base/assert.hpp"
+#include "core/cell/edge_orbit.hpp"
 #include "core/cell/pair_images.hpp"
 #include "core/geometry/arc.hpp"
 
 namespace symcell {
 namespace {
 
-// An edge by its corners as (orbit, exponent) pairs, turned so that the copies of one edge are
-// equal: the mid node of the edge is then the `turn`-th copy of the mid node of `key`.
-struct EdgeKey {
-  std::int32_t orbit_a = 0;
-  std::int32_t orbit_b = 0;
-  std::int32_t relative = 0;  // exponent of b when a has 0
-  friend auto operator<=>(const EdgeKey&, const EdgeKey&) = default;
-};
-
-struct TurnedEdge {
-  EdgeKey key;
-  std::int32_t turn = 0;
-};
+bool is_on_axis(const SymmetryCellMesh& mesh, OrbitVertex v) {
+  return mesh.fold > 1 && mesh.on_axis[static_cast<std::size_t>(v.orbit)] != 0;
+}
 
 class Elevation {
  public:
-  explicit Elevation(const SymmetryCellMesh& mesh)
-      : mesh_(mesh), rotations_(mesh.fold), result_(mesh) {}
+  Elevation(const SymmetryCellMesh& mesh, std::span<const CurvedSide> sides)
+      : mesh_(mesh), rotations_(mesh.fold), result_(mesh) {
+    for (const CurvedSide& s : sides) {
+      const TurnedEdge edge = turned(mesh.nodes[static_cast<std::size_t>(s.a)],
+                                     mesh.nodes[static_cast<std::size_t>(s.b)]);
+      middles_.emplace_back(edge.key,
+                            rotations_.rotate(s.middle, rotations_.subtract(0, edge.turn)));
+    }
+    std::ranges::sort(middles_, {}, &std::pair<EdgeKey, Point3>::first);
+  }
 
   SymmetryCellMesh run() {
     collect_edges();
@@ -58,27 +57,9 @@ class Elevation {
     std::int32_t mid = -1;  // cell node
   };
 
-  [[nodiscard]] bool on_axis(OrbitVertex v) const {
-    return mesh_.fold > 1 && mesh_.on_axis[static_cast<std::size_t>(v.orbit)] != 0;
-  }
-
+  [[nodiscard]] bool on_axis(OrbitVertex v) const { return is_on_axis(mesh_, v); }
   [[nodiscard]] TurnedEdge turned(OrbitVertex a, OrbitVertex b) const {
-    // A node on the axis has one copy: the other corner alone gives the turn.
-    if (on_axis(a)) std::swap(a, b);
-    if (on_axis(a)) {
-      if (b.orbit < a.orbit) std::swap(a, b);
-      return {{a.orbit, b.orbit, 0}, 0};
-    }
-    if (on_axis(b)) return {{a.orbit, b.orbit, 0}, a.exponent};
-    if (b.orbit < a.orbit) std::swap(a, b);
-    const std::int32_t relative = rotations_.subtract(b.exponent, a.exponent);
-    if (a.orbit != b.orbit) return {{a.orbit, b.orbit, relative}, a.exponent};
-    // Within one orbit the edge may be seen from either end; take the smaller step.
-    const std::int32_t back = rotations_.subtract(0, relative);
-    if (back < relative) return {{a.orbit, b.orbit, back}, b.exponent};
-    // A diameter (step n/2) is its own half turn: one of its two turns stands for both.
-    if (back == relative) return {{a.orbit, b.orbit, back}, std::min(a.exponent, b.exponent)};
-    return {{a.orbit, b.orbit, relative}, a.exponent};
+    return turned_edge(mesh_, rotations_, a, b);
   }
 
   // Corner pairs in VTK's order of mid-side nodes; a triangle's third side runs 2-0, as in the
@@ -129,6 +110,9 @@ class Elevation {
   }
 
   [[nodiscard]] Point3 midpoint(const EdgeKey& key) const {
+    const auto given =
+        std::ranges::lower_bound(middles_, key, {}, &std::pair<EdgeKey, Point3>::first);
+    if (given != middles_.end() && given->first == key) return given->second;
     const Point3& a = mesh_.orbit_points[static_cast<std::size_t>(key.orbit_a)];
     const Point3& b = mesh_.orbit_points[static_cast<std::size_t>(key.orbit_b)];
     const Point2 turned_b = rotations_.rotate(Point2{b.x, b.y}, key.relative);
@@ -242,14 +226,38 @@ class Elevation {
   SymmetryCellMesh result_;
   std::vector<Edge> edges_;  // by nodes
   std::vector<std::pair<EdgeKey, double>> arcs_;
-  std::vector<std::size_t> by_key_;  // edges by key and turn
+  std::vector<std::pair<EdgeKey, Point3>> middles_;  // of curved sides, by key
+  std::vector<std::size_t> by_key_;                  // edges by key and turn
 };
 
 }  // namespace
 
-SymmetryCellMesh elevate_to_quadratic(const SymmetryCellMesh& mesh) {
+TurnedEdge turned_edge(const SymmetryCellMesh& mesh,
+                       const RotationTable& rotations,
+                       OrbitVertex a,
+                       OrbitVertex b) {
+  // A node on the axis has one copy: the other corner alone gives the turn.
+  if (is_on_axis(mesh, a)) std::swap(a, b);
+  if (is_on_axis(mesh, a)) {
+    if (b.orbit < a.orbit) std::swap(a, b);
+    return {{a.orbit, b.orbit, 0}, 0};
+  }
+  if (is_on_axis(mesh, b)) return {{a.orbit, b.orbit, 0}, a.exponent};
+  if (b.orbit < a.orbit) std::swap(a, b);
+  const std::int32_t relative = rotations.subtract(b.exponent, a.exponent);
+  if (a.orbit != b.orbit) return {{a.orbit, b.orbit, relative}, a.exponent};
+  // Within one orbit the edge may be seen from either end; take the smaller step.
+  const std::int32_t back = rotations.subtract(0, relative);
+  if (back < relative) return {{a.orbit, b.orbit, back}, b.exponent};
+  // A diameter (step n/2) is its own half turn: one of its two turns stands for both.
+  if (back == relative) return {{a.orbit, b.orbit, back}, std::min(a.exponent, b.exponent)};
+  return {{a.orbit, b.orbit, relative}, a.exponent};
+}
+
+SymmetryCellMesh elevate_to_quadratic(const SymmetryCellMesh& mesh,
+                                      std::span<const CurvedSide> sides) {
   SYMCELL_ASSERT(mesh.order == 1);
-  return Elevation(mesh).run();
+  return Elevation(mesh, sides).run();
 }
 
 }  // namespace symcell

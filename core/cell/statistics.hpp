@@ -27,6 +27,17 @@ struct FoldEstimate {
   bool meshed = false;  // counted, not estimated from another fold's mesh
 };
 
+// The option `curved`: orbits of nodes and edges of a solid's boundary on its curved faces.
+struct Curving {
+  std::uint64_t faces = 0;         // groups of a known kind
+  std::uint64_t other_faces = 0;   // groups without one, which stay as they are tessellated
+  std::uint64_t vertices = 0;      // moved onto their faces
+  std::uint64_t left = 0;          // vertices that would have folded an element there
+  std::uint64_t sides = 0;         // edges with their middle on their faces
+  std::uint64_t straightened = 0;  // edges that stay straight, or an element would fold
+  double farthest = 0;             // that a vertex was moved, input units
+};
+
 struct Statistics {
   struct Cell {
     std::uint64_t elements = 0;
@@ -78,16 +89,6 @@ struct Statistics {
     int meshes = 0;
   } target;
 
-  // The option `curved`: orbits of nodes and edges of a solid's boundary on its curved faces.
-  struct Curving {
-    std::uint64_t faces = 0;         // groups of a known kind
-    std::uint64_t other_faces = 0;   // groups without one, which stay as they are tessellated
-    std::uint64_t vertices = 0;      // moved onto their faces
-    std::uint64_t left = 0;          // vertices that would have folded an element there
-    std::uint64_t sides = 0;         // edges with their middle on their faces
-    std::uint64_t straightened = 0;  // edges that stay straight, or an element would fold
-    double farthest = 0;             // that a vertex was moved, input units
-  };
   std::optional<Curving> curving;
 
   // What was changed, chosen or nearly fitted.

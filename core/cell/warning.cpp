@@ -137,6 +137,19 @@ Warning entities_left_out_warning(const std::vector<std::string>& left_out) {
           "explode them to lines and arcs if they belong to the model"};
 }
 
+Warning faces_as_chords_warning(const Curving& counts) {
+  std::vector<std::string> parts;
+  const auto add = [&](std::uint64_t count, const char* what) {
+    if (count > 0) parts.push_back(std::to_string(count) + what);
+  };
+  add(counts.left, " vertices lie beside their curved faces");
+  add(counts.straightened, " edges of curved faces stay straight");
+  add(counts.other_faces,
+      " faces are no plane, cylinder, cone, sphere or torus, and stay as they are tessellated");
+  return {WarningCode::kFacesAsChords, listed(parts, "; "),
+          "a smaller max_edge, or chord_error, brings the mesh nearer to them"};
+}
+
 std::vector<Warning> cad_warnings(const CadNotes& notes) {
   std::vector<Warning> warnings;
   std::string unit;

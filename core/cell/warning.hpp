@@ -15,6 +15,7 @@
 namespace symcell {
 
 struct CadNotes;
+struct Curving;
 struct ExemptCount;
 
 enum class WarningCode : std::uint8_t {
@@ -89,6 +90,9 @@ struct Warning {
 
 // What is to be said of how a CAD file was read.
 [[nodiscard]] std::vector<Warning> cad_warnings(const CadNotes& notes);
+
+// Of what lies beside curved faces; something does.
+[[nodiscard]] Warning faces_as_chords_warning(const Curving& counts);
 
 // `found`: elements of the cell nearest to `wanted`.
 [[nodiscard]] Warning elements_missed_warning(std::uint64_t wanted, std::uint64_t found);

@@ -33,4 +33,18 @@ Point3 project_onto(const AnalyticSurface& surface, Point3 p) {
   return p;
 }
 
+Point3 normal_at(const AnalyticSurface& surface, Point3 p) {
+  const Point3 d = p - surface.origin;
+  const Point3 across = d - dot(d, surface.direction) * surface.direction;
+  switch (surface.kind) {
+    case FaceKind::kPlane: return surface.direction;
+    case FaceKind::kSphere: return unit(d);
+    case FaceKind::kTorus: return unit(p - (surface.origin + surface.radius * unit(across)));
+    case FaceKind::kCone:
+      return std::cos(surface.half_angle) * unit(across) -
+             std::sin(surface.half_angle) * surface.direction;
+    default: return unit(across);
+  }
+}
+
 }  // namespace symcell

@@ -36,4 +36,8 @@ struct AnalyticSurface {
 // The point of the surface that is nearest to p; p itself for a kind without one.
 [[nodiscard]] Point3 project_onto(const AnalyticSurface& surface, Point3 p);
 
+// The normal of the surface near p, away from its axis, centre or tube, of length 1; of a plane its own.
+// Requires: a kind that has one.
+[[nodiscard]] Point3 normal_at(const AnalyticSurface& surface, Point3 p);
+
 }  // namespace symcell

@@ -1,8 +1,11 @@
 #include "core/guard/check_curved.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "core/cell/full_mesh.hpp"
+#include "core/geometry/quadratic_tet.hpp"
+#include "core/geometry/tet_measures.hpp"
 
 namespace symcell {
 namespace {
@@ -37,6 +40,22 @@ std::vector<std::size_t> folded_elements(const SymmetryCellMesh& mesh) {
       node[i] = {p.x, p.y};
     }
     if (!is_positive(node)) folded.push_back(e);
+  }
+  return folded;
+}
+
+std::vector<std::size_t> folded_tetrahedra(const SymmetryCellMesh& mesh, double least) {
+  const FullMeshView full(mesh);
+  std::vector<std::size_t> folded;
+  for (std::size_t e = 0; e < mesh.element_count(); ++e) {
+    QuadraticTet p;
+    for (std::size_t i = 0; i < 10; ++i) {
+      p[i] = full.cell_node_position(static_cast<std::size_t>(mesh.elements[10 * e + i]));
+    }
+    const double straight = six_volumes(p[0], p[1], p[2], p[3]);
+    const auto coefficients = jacobian_coefficients(p);
+    const double smallest = *std::min_element(coefficients.begin(), coefficients.end());
+    if (!(smallest > least * straight) || !(straight > 0)) folded.push_back(e);
   }
   return folded;
 }

@@ -73,16 +73,15 @@ std::vector<Point3> boundary_points(const SymmetryCellMesh& cell) {
   return points;
 }
 
-// Of a finished cell: in itself, and against what it was made from.
+}  // namespace
+
 Result<void> check_finished(const SymmetryCellMesh& cell,
-                            const RefinedSolid& refined,
+                            const BoundaryTopology* boundary,
                             const SectorSource& source,
                             ExecutionContext& context) {
-  SYMCELL_TRY(check_cell(cell, &refined.solid.cover.boundary));
+  SYMCELL_TRY(check_cell(cell, boundary));
   return source.check_boundary(boundary_points(cell), context);
 }
-
-}  // namespace
 
 Result<CellSearch::Found> CellSearch::run() {
   for (int cells = 1;;) {
@@ -209,7 +208,7 @@ Result<SymmetryCellMesh> CellSearch::cell_of_best() {
   if (!cut) return error_of(cut);
   auto cell = build_cell_mesh(best_->solid, *cut, source_.symmetry());
   timings_.cell += watch.lap();
-  const auto sound = check_finished(cell, *best_, source_, context_);
+  const auto sound = check_finished(cell, &best_->solid.cover.boundary, source_, context_);
   timings_.check += watch.lap() + best_->check_ms;
   if (!sound) return error_of(sound);
   return cell;

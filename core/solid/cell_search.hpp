@@ -67,4 +67,10 @@ class CellSearch {
   Error last_;
 };
 
+// Of a finished cell: in itself, and against what it was made from.  `boundary`: as of check_cell.
+[[nodiscard]] Result<void> check_finished(const SymmetryCellMesh& cell,
+                                          const BoundaryTopology* boundary,
+                                          const SectorSource& source,
+                                          ExecutionContext& context);
+
 }  // namespace symcell::solid

@@ -12,7 +12,8 @@
 //   *.duplicates            no two nodes at one place
 //   *.conforming            a facet has at most two elements, from opposite sides
 //   *.mid_nodes             order 2: one node an edge and one edge a node, at the midpoint; planar:
-//                           or so near it on the bisector that the triangles are not folded
+//                           or so near it on the bisector that the triangles are not folded; solids:
+//                           on edges of the boundary so near it that no Jacobian is negative
 //   *.vertex_links          elements at a node hang together by facets
 //   *.edge_links            solids: likewise round an edge; both exempt where the model itself
 //                           pinches, which the program computes from the model alone

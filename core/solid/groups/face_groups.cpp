@@ -80,6 +80,8 @@ class Grouper {
     }
     make_groups(regions);
     name_groups();
+    // Parts that the file names hold faces of many shapes.
+    if (options_.pieces) fit_pieces(angle == 0 ? pieces_.of_triangle : regions.of_triangle);
     return std::move(result_);
   }
 
@@ -109,6 +111,7 @@ class Grouper {
     if (!joined) return error_of(joined);
     make_groups(*joined);
     name_groups();
+    if (options_.pieces) fit_pieces(joined->of_triangle);
     return std::move(result_);
   }
 
@@ -244,6 +247,27 @@ class Grouper {
       }
     }
     return fit_shape(surface_, triangles, options_.noise);
+  }
+
+  // `classes`: per triangle, of copies.
+  void fit_pieces(const std::vector<std::int32_t>& classes) {
+    std::vector<std::vector<std::int32_t>> triangles(at(pieces_.count));
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+      triangles[at(pieces_.of_triangle[t])].push_back(static_cast<std::int32_t>(t));
+    }
+    result_.piece_of_triangle = pieces_.of_triangle;
+    for (const std::vector<std::int32_t>& own : triangles) {
+      ShapeFit fit = own.empty() ? ShapeFit{} : shape_of(own);
+      for (const std::int32_t t : own) {
+        for (const std::int32_t v : surface_.triangles[at(t)]) {
+          const Point3& p = surface_.points[at(v)];
+          if (!(distance(p, project_onto(fit, p)) <= options_.farthest))
+            fit.kind = FaceKind::kSurface;
+        }
+      }
+      result_.piece_fits.push_back(fit);
+      result_.class_of_piece.push_back(own.empty() ? -1 : classes[at(own.front())]);
+    }
   }
 
   void describe(const ShapeFit& fit, FaceGroup& group) const {

@@ -28,6 +28,11 @@ struct FaceGroups {
   std::vector<ShapeFit> fits;             // likewise, of one of the faces, in the local frame
   std::vector<std::int32_t> of_triangle;  // number of a group; 0: none
   bool named = false;                     // by the file: copies may be in different groups
+  // Pieces of groups that hang together, where they are asked for: of each its shape, and a number that
+  // copies have in common.
+  std::vector<std::int32_t> piece_of_triangle;
+  std::vector<ShapeFit> piece_fits;
+  std::vector<std::int32_t> class_of_piece;
 };
 
 struct GroupingOptions {
@@ -37,6 +42,8 @@ struct GroupingOptions {
   double reach = 0;                    // how far copies may be apart
   double noise = 0;                    // of coordinates
   std::optional<std::int32_t> sector;  // `given` is one of so many
+  bool pieces = false;                 // are asked for
+  double farthest = 0;                 // that the vertices of a piece may be from its shape
 };
 
 // `surface`: closed, in the local frame.  `tree`: of it.  `given`: the model as read, for its names.

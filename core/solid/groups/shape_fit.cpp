@@ -134,7 +134,7 @@ class Fitter {
     static_cast<AnalyticSurface&>(fit) = known;
     double outwards = 0;
     for (const Sample& s : samples_) {
-      outwards += s.area * dot(s.normal, direction_of(known, s.middle));
+      outwards += s.area * dot(s.normal, normal_at(known, s.middle));
     }
     if (known.kind == FaceKind::kPlane) {
       fit.origin = centroid_;
@@ -174,19 +174,6 @@ class Fitter {
     fit.origin = centroid_;
     fit.direction = mean;
     return fit;
-  }
-
-  // The normal of a surface near p, away from its axis, centre or tube.
-  [[nodiscard]] static Point3 direction_of(const AnalyticSurface& surface, Point3 p) {
-    const Point3 d = p - surface.origin;
-    const Point3 across = d - dot(d, surface.direction) * surface.direction;
-    switch (surface.kind) {
-      case FaceKind::kPlane: return surface.direction;
-      case FaceKind::kSphere: return d;
-      case FaceKind::kTorus:
-        return p - (surface.origin + (surface.radius / length(across)) * across);
-      default: return across;
-    }
   }
 
   // Directions that an axis may have: normals of cylinders are at right angles to it, those of cones at

@@ -12,6 +12,7 @@
 #include "core/base/execution_context.hpp"
 #include "core/cell/symmetry_cell_mesh.hpp"
 #include "core/geometry/indexed_surface.hpp"
+#include "core/solid/groups/curve_boundary.hpp"
 #include "core/solid/sector/sector.hpp"
 #include "core/solid/sizes/size_field.hpp"
 #include "core/solid/symmetry/solid_symmetry.hpp"
@@ -61,6 +62,13 @@ class SectorSource {
   [[nodiscard]] virtual Result<void> check_boundary(std::span<const Point3> /*points*/,
                                                     ExecutionContext& /*context*/) const {
     return {};
+  }
+
+  // The faces that the cell's boundary may lie on, for a cell with their markers; they refer to this source.
+  // Null: there are none, or the options do not ask for it.
+  [[nodiscard]] virtual std::unique_ptr<CurvedBoundary> curved_boundary(
+      const SymmetryCellMesh& /*cell*/, const MeshOptions& /*options*/) const {
+    return nullptr;
   }
 
   // Marks a finished cell's boundary facets and nodes with groups, where the model has facets without

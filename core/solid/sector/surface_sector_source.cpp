@@ -12,6 +12,7 @@
 #include "core/geometry/spatial_order.hpp"
 #include "core/geometry/surface_distance.hpp"
 #include "core/model/describe.hpp"
+#include "core/solid/groups/curve_boundary.hpp"
 #include "core/solid/groups/label_boundary.hpp"
 #include "core/solid/sector/glue_cuts.hpp"
 #include "core/solid/sector/quotient_to_sector.hpp"
@@ -432,6 +433,15 @@ Result<void> SurfaceSectorSource::label_boundary(SymmetryCellMesh& cell,
   return solid::label_boundary(groups_, full_, tree_, cell, context);
 }
 
+std::unique_ptr<CurvedBoundary> SurfaceSectorSource::curved_boundary(
+    const SymmetryCellMesh& cell, const MeshOptions& options) const {
+  // Of a tessellation order 1 is as good as the mesh's own triangles.
+  if (groups_.piece_fits.empty() || !(is_cad_ || options.order == 2)) return nullptr;
+  const CurvingBounds bounds{allowed_,           options.radius_edge, options.max_edge,
+                             options.max_volume, sizes_.get(),        is_cad_};
+  return std::make_unique<CurvedBoundary>(groups_, full_, tree_, cell, bounds);
+}
+
 Result<void> SurfaceSectorSource::find_groups(const TriangleSurface& given,
                                               const MeshOptions& options,
                                               ExecutionContext& context) {
@@ -442,6 +452,9 @@ Result<void> SurfaceSectorSource::find_groups(const TriangleSurface& given,
   how.reach = kMatchTolerances * tolerance_;
   how.noise = noise_;
   how.sector = options.sector;
+  is_cad_ = given.cad_notes.has_value();
+  how.pieces = options.curved && (is_cad_ || options.order == 2);
+  how.farthest = allowed_;
   auto found = find_face_groups(full_, tree_, given, how, context);
   if (!found) return error_of(found);
   groups_ = std::move(*found);

@@ -55,6 +55,8 @@ class SurfaceSectorSource final : public SectorSource {
                                             ExecutionContext& context) const override;
   [[nodiscard]] Result<void> label_boundary(SymmetryCellMesh& cell,
                                             ExecutionContext& context) const override;
+  [[nodiscard]] std::unique_ptr<CurvedBoundary> curved_boundary(
+      const SymmetryCellMesh& cell, const MeshOptions& options) const override;
 
   // Groups of the faces, alike in all copies of the fold as it is now; those with smaller folds keep
   // them.  `given`: the model as read.  Errors: limits.
@@ -110,6 +112,7 @@ class SurfaceSectorSource final : public SectorSource {
   TriangleTree tree_;            // of the input
   std::vector<Point3> samples_;  // of the input
   FaceGroups groups_;            // of the input
+  bool is_cad_ = false;          // groups have exact shapes
   std::vector<SizeSource> size_sources_;
   double gradation_ = kStandardGradation;
   std::shared_ptr<const SizeField> sizes_;  // of the sources, at this fold

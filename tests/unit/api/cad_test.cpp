@@ -14,6 +14,7 @@
 
 #include "api/formats/model_reader.hpp"
 #include "api/schema/statistics_json.hpp"
+#include "core/cell/full_mesh.hpp"
 #include "core/mesh_model.hpp"
 #include "tests/support/test_files.hpp"
 
@@ -216,6 +217,92 @@ TEST_F(Cad, AreMeshedWithTheirGroups) {
         std::count(outcome->mesh.boundary_markers.begin(), outcome->mesh.boundary_markers.end(), 0),
         0)
         << file;
+  }
+}
+
+// Farthest that nodes and mid-side nodes on the group of a marker's facets are from a cylinder about
+// an axis along z.
+double beside_cylinder(const SymmetryCellMesh& cell,
+                       std::int32_t marker,
+                       Point2 centre,
+                       double radius) {
+  const FullMeshView full(cell);
+  const auto k = static_cast<std::size_t>(cell.nodes_per_facet);
+  double off = 0;
+  for (std::size_t f = 0; f < cell.facet_count(); ++f) {
+    if (cell.boundary_markers[f] != marker) continue;
+    for (std::size_t i = 0; i < k; ++i) {
+      const Point3 p = full.cell_node_position(static_cast<std::size_t>(cell.boundary[k * f + i]));
+      off = std::max(off, std::abs(distance({p.x, p.y}, centre) - radius));
+    }
+  }
+  return off;
+}
+
+std::int32_t marker_of(const SymmetryCellMesh& cell, const std::string& name) {
+  for (const MarkerName& n : cell.marker_names) {
+    if (n.name == name) return n.marker;
+  }
+  ADD_FAILURE() << "no group " << name;
+  return 0;
+}
+
+TEST_F(Cad, VerticesLieOnTheFaces) {
+  for (const std::int32_t order : {1, 2}) {
+    MeshOptions options;
+    options.order = order;
+    ExecutionContext context;
+    const auto outcome = mesh_model(read("disc.step"), options, context);
+    ASSERT_TRUE(outcome) << outcome.error().message;
+    const SymmetryCellMesh& cell = outcome->mesh;
+    EXPECT_LT(beside_cylinder(cell, marker_of(cell, "bore"), {0, 0}, 10), 1e-9);
+    EXPECT_LT(beside_cylinder(cell, marker_of(cell, "rim"), {0, 0}, 50), 1e-9);
+    ASSERT_TRUE(outcome->statistics.curving);
+    EXPECT_EQ(outcome->statistics.curving->left, 0U);
+    EXPECT_EQ(outcome->statistics.curving->straightened, 0U);
+    EXPECT_EQ(outcome->statistics.curving->other_faces, 0U);
+  }
+}
+
+TEST_F(Cad, VolumeOfADiscAtOrderTwo) {
+  MeshOptions options;
+  options.order = 2;
+  options.symmetry_tolerance_rel = 2e-3;  // as coarse as to have fewer than 10,000 tetrahedra
+  for (const char* file : {"disc.step", "disc_faces.igs"}) {
+    ExecutionContext context;
+    const auto outcome = mesh_model(read(file), options, context);
+    ASSERT_TRUE(outcome) << outcome.error().message;
+    const Statistics& statistics = outcome->statistics;
+    EXPECT_LE(statistics.full.elements, 10'000U);
+    const double volume = 6 * statistics.cell.measure;
+    EXPECT_LT(std::abs(volume / kDisc - 1), 1e-5) << file << ", " << statistics.full.elements;
+  }
+  options.curved = false;
+  ExecutionContext context;
+  const auto straight = mesh_model(read("disc.step"), options, context);
+  ASSERT_TRUE(straight) << straight.error().message;
+  EXPECT_GT(std::abs(6 * straight->statistics.cell.measure / kDisc - 1), 3e-4);
+  EXPECT_FALSE(straight->statistics.curving);
+}
+
+// Chamfers, fillets, balls: cones, tori and spheres, some meeting without an angle.
+TEST_F(Cad, OtherPartsAtOrderTwo) {
+  const double flange = kPi * (60.0 * 60 * 12 + 30.0 * 30 * 25 - 20.0 * 20 * 37 - 8 * 25 * 12 -
+                               8 * (2.0 / 3 * (49 + 35 + 25) - 2 * 25));
+  for (const auto& [file, volume] : std::map<std::string, double>{
+           {"flange.step", flange},
+           {"bracket.step", 8 * (80 * 30 + kPi * 15 * 15 - 2 * kPi * 49 - 200)},
+           {"nut.step", 8 * (1.5 * std::sqrt(3.0) * 100 - kPi * 25)}}) {
+    MeshOptions options;
+    options.order = 2;
+    ExecutionContext context;
+    const auto outcome = mesh_model(read(file), options, context);
+    ASSERT_TRUE(outcome) << file << ": " << outcome.error().message;
+    const Statistics& statistics = outcome->statistics;
+    EXPECT_LT(std::abs(outcome->mesh.fold * statistics.cell.measure / volume - 1), 3e-4)
+        << file << ", " << statistics.full.elements;
+    ASSERT_TRUE(statistics.curving) << file;
+    EXPECT_LT(statistics.curving->straightened, statistics.curving->sides / 20 + 1) << file;
   }
 }
 
