@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "api/formats/gzip.hpp"
 #include "api/formats/vtu_reader.hpp"
 #include "core/geometry/axis_frame.hpp"
+#include "core/verify/verify_mesh.hpp"
 
 namespace symcell {
 namespace {
@@ -19,6 +21,8 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMaxMeshBytes = std::size_t{16} << 30U;
 constexpr std::string_view kArchive = "SYMCELL";
+constexpr double kMostCoordinate = 1e60;   // as for the vertices of a model
+constexpr double kLeastDirection = 1e-60;  // likewise
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -79,6 +83,8 @@ class Rebuilder {
 
   Result<void> check_sizes() const {
     if (in_.fold < 1 || in_.order < 1 || in_.order > 2) return misfit("fold or order");
+    if (in_.dimension != 2 && in_.dimension != 3) return misfit("dimension is neither 2 nor 3");
+    SYMCELL_TRY(check_places());
     if (in_.elements.size() != in_.regions.size() * nodes_per_element()) {
       return misfit("elements and regions differ in number");
     }
@@ -97,6 +103,20 @@ class Rebuilder {
     }
     if (in_.boundary.size() != in_.boundary_markers.size() * nodes_per_facet()) {
       return misfit("facets have other numbers of nodes than their order says");
+    }
+    return {};
+  }
+
+  Result<void> check_places() const {
+    const auto sound = [](Point3 p) {
+      return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kMostCoordinate;
+    };
+    if (!std::ranges::all_of(in_.points, sound)) {
+      return misfit("a coordinate is no number, or beyond 1e60");
+    }
+    if (!sound(in_.axis_origin) || !sound(in_.axis_direction) ||
+        !(length(in_.axis_direction) >= kLeastDirection)) {
+      return misfit("the axis has no direction");
     }
     return {};
   }
@@ -238,6 +258,13 @@ Point3 point_of(const Json& json) {
           json.size() > 2 ? json.at(2).get<double>() : 0};
 }
 
+// Formats of solvers end a name with its line.
+std::string on_one_line(std::string name) {
+  std::ranges::replace_if(
+      name, [](char c) { return static_cast<unsigned char>(c) < ' '; }, '_');
+  return name;
+}
+
 // Throws what the JSON library throws.
 Result<LooseCell> loose_from_json(const Json& json) {
   if (!json.is_object() || !json.contains("elements") || !json.contains("lower")) {
@@ -245,6 +272,14 @@ Result<LooseCell> loose_from_json(const Json& json) {
   }
   if (json.contains("sector")) {
     return fail(ErrorCode::kUnsupportedModel, "this is a full mesh; give the cell");
+  }
+  if (json.contains("packed")) {
+    return fail(
+        ErrorCode::kUnsupportedModel,
+        "packed JSON is for programs that draw; give JSON that was written without --packed");
+  }
+  for (const char* name : {"dimension", "order", "fold"}) {
+    if (!json.at(name).is_number_integer()) return misfit(std::string(name) + " is no integer");
   }
   LooseCell cell;
   cell.dimension = json.at("dimension").get<std::int32_t>();
@@ -260,7 +295,7 @@ Result<LooseCell> loose_from_json(const Json& json) {
   cell.node_markers = json.at("markers").get<std::vector<std::int32_t>>();
   const Json names = json.value("marker_names", Json::object());
   for (const auto& [marker, name] : names.items()) {
-    cell.marker_names.push_back({std::stoi(marker), name.get<std::string>()});
+    cell.marker_names.push_back({std::stoi(marker), on_one_line(name.get<std::string>())});
   }
   cell.has_boundary = true;
   for (const Json& facet : json.at("boundary")) {
@@ -284,8 +319,11 @@ Result<LooseCell> loose_from_json(const Json& json) {
 Result<LooseCell> read_json(std::string_view bytes) {
   try {
     return loose_from_json(Json::parse(bytes));
-  } catch (const std::exception& error) {
-    return misfit(error.what());
+  } catch (const Json::parse_error& error) {
+    return fail(ErrorCode::kSyntax,
+                "this is no JSON: it goes wrong at byte " + std::to_string(error.byte));
+  } catch (const std::exception&) {
+    return misfit("its JSON lacks something, or has another type than symcell writes");
   }
 }
 
@@ -307,6 +345,29 @@ Result<LooseCell> read_vtu_cell(std::string_view bytes) {
   return cell;
 }
 
+// What a checker of files says of it: a cell whose copies do not fit would become a wrong full mesh.
+Result<void> check_loose(const LooseCell& loose, const SymmetryCellMesh& cell) {
+  MeshData data;
+  data.dimension = loose.dimension;
+  data.order = loose.order;
+  data.fold = loose.fold;
+  data.shape_tolerance_rel = loose.shape_tolerance_rel;
+  data.axis_origin = loose.axis_origin;
+  data.axis_direction = loose.axis_direction;
+  data.points = loose.points;
+  data.nodes_per_element = cell.nodes_per_element;
+  data.elements = loose.elements;
+  data.regions = loose.regions;
+  data.markers = cell.node_markers;
+  data.lower_to_higher = loose.lower_to_higher;
+  VerifyOptions options;
+  options.most_restored_nodes = 0;  // the cell alone
+  for (const Check& check : verify_mesh(data, nullptr, nullptr, options).checks) {
+    if (check.status == Check::Status::kFail) return misfit(check.name + ": " + check.detail);
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<SymmetryCellMesh> cell_of(const LooseCell& loose) {
@@ -321,10 +382,17 @@ Result<SymmetryCellMesh> read_cell(std::string_view bytes) {
   }
   if (bytes.starts_with(kArchive)) return read_cell_archive(bytes);
   const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
-  const bool json = begin != std::string_view::npos && bytes[begin] == '{';
+  const char first = begin == std::string_view::npos ? ' ' : bytes[begin];
+  const bool json = first == '{';
+  if (!json && first != '<') {
+    return fail(ErrorCode::kSyntax,
+                "this is no mesh that is read: give JSON or VTU of a cell, or a job's cell");
+  }
   const Result<LooseCell> loose = json ? read_json(bytes) : read_vtu_cell(bytes);
   if (!loose) return error_of(loose);
-  return cell_of(*loose);
+  auto cell = cell_of(*loose);
+  if (cell) SYMCELL_TRY(check_loose(*loose, *cell));
+  return cell;
 }
 
 }  // namespace symcell

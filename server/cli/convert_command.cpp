@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kExamples =
     R"(CELL: JSON or VTU that symcell wrote as a cell, or the `cell` of a job in the data directory; gzip'd ones
-too. JSON and a job's cell lose nothing. VTU has markers at nodes alone: facets get that of their nodes,
+too. JSON and a job's cell lose nothing but a rounding; packed JSON is not read. VTU has markers at nodes alone: facets get that of their nodes,
 and groups have no names.
 
 Examples:

@@ -18,7 +18,8 @@ void set_handlers(void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
   sigemptyset(&action.sa_mask);
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  // Not reset: some send two signals at once, and the second would leave open outputs behind. What is
+  // cancelled ends within a second, by force if need be.
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }

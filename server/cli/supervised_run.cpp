@@ -111,6 +111,8 @@ Result<std::string> result_of(const SupervisedWork& work, ExecutionContext& cont
   // A terminal sends these to both processes: the parent hears them and cancels.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
+  // A reader that has had enough of standard output is told by the write.
+  std::signal(SIGPIPE, SIG_IGN);
   server::apply_limits({settings.memory_bytes, 0});
   server::prepare_heap();
   server::reserve_heap(settings.memory_bytes);
