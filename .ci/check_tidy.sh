@@ -9,7 +9,7 @@ if ! git rev-parse --quiet --verify HEAD~1 >/dev/null; then
   echo "clang-tidy: SKIPPED, the commit before the last one is not here" >&2
   exit 0
 fi
-mapfile -t changed < <(git diff --name-only --diff-filter=d HEAD~1 -- cad core api server | grep '\.cpp$' || true)
+mapfile -t changed < <(git diff --name-only --diff-filter=d HEAD~1 -- core api server | grep '\.cpp$' || true)
 if ((${#changed[@]} > most)); then
   echo "clang-tidy: ${#changed[@]} files changed, the first $most are looked at" >&2
   changed=("${changed[@]:0:most}")

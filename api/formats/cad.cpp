@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "api/printable.hpp"
-#include "cad/cad_module.hpp"
+#include "api/cad/cad_module.hpp"
 #include "core/base/child_process.hpp"
 
 namespace symcell {

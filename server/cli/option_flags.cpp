@@ -2,16 +2,26 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <string_view>
 
 #include "api/schema/options.hpp"
 
 namespace symcell::cli {
+namespace {
+
+// Options that are lists may be given several times: --size bore=0.5 --size rim=1.
+bool is_list(std::string_view name) {
+  return name == "sizes" || name == "divisions" || name == "fail_on";
+}
+
+}  // namespace
 
 void OptionFlags::add_to(CLI::App& command) {
   for (const OptionInfo& info : mesh_option_table()) {
     const std::string name(info.name);
     std::string flag = "--" + name;
     std::ranges::replace(flag, '_', '-');
+    if (name == "sizes") flag += ",--size";
     std::string help(info.help);
     if (!info.standard.empty()) help += " [" + std::string(info.standard) + "]";
     CLI::Option* option = nullptr;
@@ -22,7 +32,11 @@ void OptionFlags::add_to(CLI::App& command) {
       option = command.add_option_function<std::string>(
           flag, [this, name](const std::string& value) { given_.emplace_back(name, value); }, help);
       option->type_name(std::string(info.metavar));
-      option->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+      if (is_list(name)) {
+        option->delimiter(',')->multi_option_policy(CLI::MultiOptionPolicy::Join);
+      } else {
+        option->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+      }
     }
     option->group("Meshing");
   }

@@ -1,5 +1,6 @@
 #include "server/worker/process_end.hpp"
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstring>
@@ -10,6 +11,9 @@ namespace {
 // Libraries that abort when they get no memory do so near the limit; whoever aborts far below it
 // has another reason. Resident memory stays below what the limit counts.
 constexpr double kNearLimit = 0.8;
+
+// Less than half of what a server is said to need for itself: the kernel, short of memory, ends what is large.
+constexpr std::uint64_t kSmallBytes = std::uint64_t{128} << 20U;
 
 std::string signal_name(int signal) {
   const char* name = ::sigabbrev_np(signal);
@@ -48,6 +52,10 @@ std::string_view end_kind_name(EndKind kind) {
     case EndKind::kOutside: return "outside";
   }
   return "crash";
+}
+
+bool was_small(const ProcessEnd& end, std::uint64_t server_peak_bytes) {
+  return end.peak_bytes <= std::max(kSmallBytes, server_peak_bytes);
 }
 
 EndKind kind_of(const ProcessEnd& end, const WorkerLimits& limits) {

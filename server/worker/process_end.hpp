@@ -30,6 +30,9 @@ enum class EndKind : std::uint8_t {
 };
 
 [[nodiscard]] std::string_view end_kind_name(EndKind kind);
+// Whether the process was too small to be what a machine short of memory is short for. `server_peak_bytes`: of
+// the process that started it, for which the kernel counts it as large as that (wait4(2) after exec).
+[[nodiscard]] bool was_small(const ProcessEnd& end, std::uint64_t server_peak_bytes);
 [[nodiscard]] EndKind kind_of(const ProcessEnd& end, const WorkerLimits& limits);
 
 // The error of the request. `progress`: as last reported. `time_limit_s`: of the request.

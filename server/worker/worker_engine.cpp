@@ -1,10 +1,12 @@
 #include "server/worker/worker_engine.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "api/formats/cad.hpp"
@@ -19,6 +21,11 @@ namespace {
 // A process killed from outside may have been unlucky: another job took the memory. So often it is
 // tried; a crash of its own making is not repeated, the same model would crash again.
 constexpr int kMaxTries = 3;
+// One that was small when it was killed had no part in what the machine was short of: whatever kills it has
+// nothing to do with the job. More runs than these are refused anyhow: something ends all there is.
+constexpr int kMaxSmallDeaths = 20;
+// Before a run after such an end, times their number: what kills is given time to pass.
+constexpr std::chrono::milliseconds kPauseAfterDeath{25};
 // To read the largest model takes seconds; this ends what hangs.
 constexpr double kMaxReadSeconds = 60;
 // Read, a model takes a few times its bytes.
@@ -85,12 +92,20 @@ TaskOutcome WorkerEngine::run_once(const RequestMessage& request, ExecutionConte
 
 Result<std::string> WorkerEngine::run_request(const RequestMessage& request,
                                               ExecutionContext& context) {
-  for (int tries = request.job.lost_workers + 1;; ++tries) {
+  int tries = request.job.lost_workers + 1;
+  int small_deaths = 0;
+  while (true) {
     TaskOutcome outcome = run_once(request, context);
     const bool lost = outcome.end == EndKind::kOutside && !context.cancelled();
-    // Counted where it lasts: three tries are meant in all, not after each start of the server.
-    if (lost && request.job.on_lost_worker) request.job.on_lost_worker();
-    if (!lost || tries >= kMaxTries) return std::move(outcome.document);
+    if (!lost) return std::move(outcome.document);
+    if (outcome.was_small && small_deaths < kMaxSmallDeaths) {
+      std::this_thread::sleep_for(++small_deaths * kPauseAfterDeath);
+    } else {
+      // Counted where it lasts: three tries are meant in all, not after each start of the server.
+      if (request.job.on_lost_worker) request.job.on_lost_worker();
+      if (tries >= kMaxTries) return std::move(outcome.document);
+      ++tries;
+    }
     std::error_code ignored;
     std::filesystem::remove(request.job.cell, ignored);
     std::filesystem::remove(request.job.statistics, ignored);

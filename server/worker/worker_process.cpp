@@ -202,6 +202,9 @@ TaskOutcome WorkerProcess::end_of_request(const RequestMessage& request,
   TaskOutcome outcome{
       fail(error_of(how, request.limits, request.job.options.time_limit_s, context.progress()))};
   outcome.end = kind_of(how, request.limits);
+  rusage own{};
+  ::getrusage(RUSAGE_SELF, &own);
+  outcome.was_small = was_small(how, static_cast<std::uint64_t>(own.ru_maxrss) * 1024);
   outcome.last_words = std::move(last_words_);
   return outcome;
 }

@@ -28,6 +28,7 @@ inline constexpr std::chrono::milliseconds kTimeGrace{1000};
 struct TaskOutcome {
   Result<std::string> document;     // of an inspection; empty for a mesh
   std::optional<EndKind> end = {};  // how the process ended, if it did
+  bool was_small = false;           // when it ended
   std::string last_words = {};      // what it wrote to standard error meanwhile, if it ended
 };
 

@@ -98,13 +98,35 @@ class WorkersTest(unittest.TestCase):
         self.assertEqual(inspected.json()["code"], "worker_crashed")
         self.assertEqual(server.post_json("/v1/inspect", {"model": square()}).status, 200)
 
+    def large_worker(self, but=()):
+        """The busy worker, once it has so much memory that the kernel might kill it for that."""
+        worker = self.busy_worker(but)
+
+        def is_large():
+            status = pathlib.Path(f"/proc/{worker}/status").read_text()
+            return int(re.search(r"VmHWM:\s+(\d+) kB", status)[1]) > 200 * 1024
+        until(is_large, "the worker is large")
+        return worker
+
+    def test_small_workers_may_be_killed_more_often_for_the_cause_is_another(self):
+        self.start()
+        job_id = self.running({"seed": HANG, "time_limit": 60})
+        killed = set()
+        for _ in range(8):
+            victim = self.busy_worker(killed)
+            killed.add(victim)
+            os.kill(victim, signal.SIGKILL)
+        self.busy_worker(killed)
+        self.assertEqual(self.server.job(job_id)["state"], "running")
+        self.assertEqual(self.ends("outside"), 8)
+
     def test_a_worker_killed_from_outside_is_tried_again_but_not_for_ever(self):
         self.start()
         job_id = self.running(long_options())
         killed = set()
         for _ in range(3):
             self.assertEqual(self.server.job(job_id)["state"], "running")
-            victim = self.busy_worker(killed)
+            victim = self.large_worker(killed)
             killed.add(victim)
             os.kill(victim, signal.SIGKILL)
         job = self.server.finished(job_id)
@@ -120,7 +142,7 @@ class WorkersTest(unittest.TestCase):
 
         def kill_worker():
             self.server.reaches(job_id, "running")
-            victim = self.busy_worker(killed)
+            victim = self.large_worker(killed)
             killed.add(victim)
             os.kill(victim, signal.SIGKILL)
 

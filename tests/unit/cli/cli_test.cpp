@@ -335,6 +335,20 @@ TEST_F(Cli, ConvertWritesWhatMeshWouldHave) {
   EXPECT_EQ(symcell("convert " + nut + " --cell " + file("e.vtu")).exit_code, 3);
 }
 
+TEST_F(Cli, ListsMayBeGivenInParts) {
+  const std::string nut = model("p3_01_hexnut_n6.poly");
+  const auto sizes = [&](const std::string& flags) {
+    const Outcome made =
+        symcell("mesh " + nut + flags + " --cell " + file("c.vtu") + " --stats " + file("s.json"));
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    return Json::parse(test::read_file(file("s.json")))["settings"]["sizes"];
+  };
+  const Json at_once = sizes(" --sizes vertex:0=0.3,point:0/0/0=0.4");
+  EXPECT_EQ(sizes(" --size vertex:0=0.3 --size point:0/0/0=0.4"), at_once);
+  EXPECT_EQ(at_once, "vertex:0=0.3,point:0.0/0.0/0.0=0.4");
+  EXPECT_EQ(symcell("mesh " + nut + " --fold 6 --fold 3").exit_code, 2);
+}
+
 TEST_F(Cli, CompletionKnowsCommandsAndFlags) {
   for (const char* shell : {"bash", "zsh", "fish", "man"}) {
     const Outcome script = symcell(std::string("completion ") + shell);

@@ -80,8 +80,9 @@ TEST(ModelGlb, ArcsAreDrawnInChordsAndNamesKept) {
 }
 
 TEST(ModelGlb, ModelsNeedNotBeSound) {
-  TriangleSurface surface{
-      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 9}, {-1, 0, 1}}, {}, {}, {}};
+  TriangleSurface surface;
+  surface.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  surface.triangles = {{0, 1, 2}, {0, 1, 9}, {-1, 0, 1}};
   EXPECT_EQ(drawn(surface).indices("boundary_0"), 3U);
   // Beyond single precision: at its end.
   const Picture huge = drawn(Pslg{{{1e308, 0}, {-1e308, 1}}, {{0, 1, 0}}, {}, {}});

@@ -21,7 +21,9 @@ TEST(ModelReader, FormatsByNameAndMediaType) {
   EXPECT_EQ(model_format_from_name("b.poly.gz"), ModelFormat::kPoly);
   EXPECT_EQ(model_format_from_name("b.STL.gz"), ModelFormat::kStl);
   EXPECT_EQ(model_format_from_name("b.smesh"), ModelFormat::kSmesh);
-  EXPECT_FALSE(model_format_from_name("b.step"));
+  EXPECT_EQ(model_format_from_name("b.STP"), ModelFormat::kStep);
+  EXPECT_EQ(model_format_from_name("b.igs"), ModelFormat::kIges);
+  EXPECT_FALSE(model_format_from_name("b.sldprt"));
   EXPECT_EQ(model_format_from_media_type("model/stl"), ModelFormat::kStl);
   EXPECT_EQ(model_format_from_media_type("application/sla"), ModelFormat::kStl);
   EXPECT_EQ(model_format_from_media_type("Model/OBJ"), ModelFormat::kObj);

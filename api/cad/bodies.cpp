@@ -17,7 +17,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cad/parts.hpp"
+#include "api/cad/parts.hpp"
 
 namespace symcell::cad {
 namespace {

@@ -21,8 +21,8 @@
 #include <istream>
 #include <streambuf>
 
-#include "cad/names.hpp"
-#include "cad/parts.hpp"
+#include "api/cad/names.hpp"
+#include "api/cad/parts.hpp"
 
 namespace symcell::cad {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cad/cad_module.hpp"
+#include "api/cad/cad_module.hpp"
 
 namespace symcell::cad {
 

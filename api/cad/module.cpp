@@ -5,8 +5,8 @@
 #include <exception>
 #include <string>
 
-#include "cad/answer.hpp"
-#include "cad/parts.hpp"
+#include "api/cad/answer.hpp"
+#include "api/cad/parts.hpp"
 
 namespace symcell::cad {
 namespace {

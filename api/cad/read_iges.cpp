@@ -16,8 +16,8 @@
 #include <array>
 #include <cerrno>
 
-#include "cad/names.hpp"
-#include "cad/parts.hpp"
+#include "api/cad/names.hpp"
+#include "api/cad/parts.hpp"
 
 namespace symcell::cad {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "cad/parts.hpp"
+#include "api/cad/parts.hpp"
 
 namespace symcell::cad {
 

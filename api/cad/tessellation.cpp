@@ -28,8 +28,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "cad/answer.hpp"
-#include "cad/parts.hpp"
+#include "api/cad/answer.hpp"
+#include "api/cad/parts.hpp"
 
 namespace symcell::cad {
 namespace {
