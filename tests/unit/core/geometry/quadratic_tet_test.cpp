@@ -11,7 +11,15 @@ namespace symcell {
 namespace {
 
 QuadraticTet straight(Point3 a, Point3 b, Point3 c, Point3 d) {
-  return {a, b, c, d, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), 0.5 * (a + d), 0.5 * (b + d),
+  return {a,
+          b,
+          c,
+          d,
+          0.5 * (a + b),
+          0.5 * (b + c),
+          0.5 * (c + a),
+          0.5 * (a + d),
+          0.5 * (b + d),
           0.5 * (c + d)};
 }
 
