@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "api/printable.hpp"
 #include "api/cad/cad_module.hpp"
+#include "api/printable.hpp"
 #include "core/base/child_process.hpp"
 
 namespace symcell {

@@ -11,15 +11,15 @@ namespace symcell {
 
 // An edge by its corners as (orbit, exponent) pairs, turned so that the copies of one edge are
 // equal: the mid node of the edge is then the `turn`-th copy of the mid node of `key`.
-struct EdgeKey {
+struct EdgeOrbit {
   std::int32_t orbit_a = 0;
   std::int32_t orbit_b = 0;
   std::int32_t relative = 0;  // exponent of b when a has 0
-  friend auto operator<=>(const EdgeKey&, const EdgeKey&) = default;
+  friend auto operator<=>(const EdgeOrbit&, const EdgeOrbit&) = default;
 };
 
 struct TurnedEdge {
-  EdgeKey key;
+  EdgeOrbit key;
   std::int32_t turn = 0;
 };
 

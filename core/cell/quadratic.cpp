@@ -28,7 +28,7 @@ class Elevation {
       middles_.emplace_back(edge.key,
                             rotations_.rotate(s.middle, rotations_.subtract(0, edge.turn)));
     }
-    std::ranges::sort(middles_, {}, &std::pair<EdgeKey, Point3>::first);
+    std::ranges::sort(middles_, {}, &std::pair<EdgeOrbit, Point3>::first);
   }
 
   SymmetryCellMesh run() {
@@ -109,14 +109,14 @@ class Elevation {
                       [](const auto& arc) { return std::pair(arc.first, std::abs(arc.second)); });
   }
 
-  [[nodiscard]] Point3 midpoint(const EdgeKey& key) const {
+  [[nodiscard]] Point3 midpoint(const EdgeOrbit& key) const {
     const auto given =
-        std::ranges::lower_bound(middles_, key, {}, &std::pair<EdgeKey, Point3>::first);
+        std::ranges::lower_bound(middles_, key, {}, &std::pair<EdgeOrbit, Point3>::first);
     if (given != middles_.end() && given->first == key) return given->second;
     const Point3& a = mesh_.orbit_points[static_cast<std::size_t>(key.orbit_a)];
     const Point3& b = mesh_.orbit_points[static_cast<std::size_t>(key.orbit_b)];
     const Point2 turned_b = rotations_.rotate(Point2{b.x, b.y}, key.relative);
-    const auto arc = std::ranges::lower_bound(arcs_, key, {}, &std::pair<EdgeKey, double>::first);
+    const auto arc = std::ranges::lower_bound(arcs_, key, {}, &std::pair<EdgeOrbit, double>::first);
     if (arc != arcs_.end() && arc->first == key) {
       const Point2 mid = arc_middle({a.x, a.y}, turned_b, arc->second);
       return {mid.x, mid.y, a.z};
@@ -125,7 +125,7 @@ class Elevation {
   }
 
   // A mid node is on the axis if its edge lies on it, or is a diameter.
-  [[nodiscard]] bool mid_on_axis(const EdgeKey& key) const {
+  [[nodiscard]] bool mid_on_axis(const EdgeOrbit& key) const {
     const auto axis = [&](std::int32_t orbit) { return on_axis({orbit, 0}); };
     if (axis(key.orbit_a) && axis(key.orbit_b)) return true;
     return key.orbit_a == key.orbit_b && 2 * key.relative == mesh_.fold;
@@ -225,9 +225,9 @@ class Elevation {
   RotationTable rotations_;
   SymmetryCellMesh result_;
   std::vector<Edge> edges_;  // by nodes
-  std::vector<std::pair<EdgeKey, double>> arcs_;
-  std::vector<std::pair<EdgeKey, Point3>> middles_;  // of curved sides, by key
-  std::vector<std::size_t> by_key_;                  // edges by key and turn
+  std::vector<std::pair<EdgeOrbit, double>> arcs_;
+  std::vector<std::pair<EdgeOrbit, Point3>> middles_;  // of curved sides, by key
+  std::vector<std::size_t> by_key_;                    // edges by key and turn
 };
 
 }  // namespace

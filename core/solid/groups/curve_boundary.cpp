@@ -254,7 +254,7 @@ Result<SymmetryCellMesh> CurvedBoundary::elevate(const SymmetryCellMesh& cell,
     std::int32_t turn = 0;
     bool known = true;  // all facets at it are of a known kind
   };
-  std::map<EdgeKey, Side> edges;
+  std::map<EdgeOrbit, Side> edges;
   for (std::size_t f = 0; f < cell.facet_count(); ++f) {
     if (f % kCheckedEach == 0) {
       SYMCELL_TRY(context.check());
@@ -312,7 +312,7 @@ Result<SymmetryCellMesh> CurvedBoundary::elevate(const SymmetryCellMesh& cell,
       return elevated;
     }
     // Sides of folded elements are straight from now on: with none left nothing is folded.
-    std::vector<EdgeKey> straight;
+    std::vector<EdgeOrbit> straight;
     for (const std::size_t e : folded) {
       for (std::size_t i = 0; i < 4; ++i) {
         for (std::size_t j = i + 1; j < 4; ++j) {
@@ -325,7 +325,7 @@ Result<SymmetryCellMesh> CurvedBoundary::elevate(const SymmetryCellMesh& cell,
     std::sort(straight.begin(), straight.end());
     const std::size_t before = sides.size();
     std::erase_if(sides, [&](const CurvedSide& s) {
-      const EdgeKey key =
+      const EdgeOrbit key =
           turned_edge(cell, rotations_, cell.nodes[at(s.a)], cell.nodes[at(s.b)]).key;
       return std::binary_search(straight.begin(), straight.end(), key);
     });

@@ -82,7 +82,7 @@ class Improver {
   std::vector<GivenUp> given_up_;
   std::vector<std::uint64_t> changed_;
   std::vector<std::uint32_t> changes_;  // per vertex, of tetrahedra at it, in this round
-  std::vector<TetId> touched_;  // by the last change
+  std::vector<TetId> touched_;          // by the last change
   double detour_goal_ = -1;
   std::uint64_t detours_left_ = 0;
   std::vector<TetCopy> star_;
