@@ -391,7 +391,9 @@ Result<SymmetryCellMesh> read_cell(std::string_view bytes) {
   const Result<LooseCell> loose = json ? read_json(bytes) : read_vtu_cell(bytes);
   if (!loose) return error_of(loose);
   auto cell = cell_of(*loose);
-  if (cell) SYMCELL_TRY(check_loose(*loose, *cell));
+  if (cell) {
+    SYMCELL_TRY(check_loose(*loose, *cell));
+  }
   return cell;
 }
 

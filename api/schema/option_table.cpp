@@ -494,6 +494,13 @@ constexpr OptionRow bound_row(OptionInfo info) {
           [](const MeshOptions& o, ModelKind) { return bound_to_json(o.*Member); }};
 }
 
+Result<void> set_curved(const OptionInfo& info, const OptionValue& value, MeshOptions& options) {
+  bool curved = false;
+  SYMCELL_TRY(set_flag(info, value, curved));
+  options.curved = curved;
+  return {};
+}
+
 template <bool MeshOptions::*Member>
 constexpr OptionRow flag_row(OptionInfo info) {
   return {info,
@@ -631,11 +638,12 @@ constexpr auto kRows = std::to_array<OptionRow>({
     {{"order", "1|2", "1", "1: linear elements; 2: quadratic, with mid-side nodes", kAll},
      set_order,
      get_member<&MeshOptions::order>},
-    flag_row<&MeshOptions::curved>(
-        {"curved", "true|false", "true",
-         "surfaces: the boundary lies on the planes, cylinders, cones, spheres and tori that faces "
-         "are; of STEP and IGES vertices, of order 2 mid-side nodes, too",
-         kSolids}),
+    {{"curved", "true|false", "true of STEP and IGES",
+      "surfaces: the boundary lies on the planes, cylinders, cones, spheres and tori that faces "
+      "are; of STEP and IGES vertices, of order 2 mid-side nodes, too",
+      kSolids},
+     set_curved,
+     [](const MeshOptions& o, ModelKind) { return o.curved ? Json(*o.curved) : Json(nullptr); }},
     {{"max_elements", "N", "50000000", "give up beyond this many elements of the cell", kAll},
      set_max_elements,
      get_member<&MeshOptions::max_elements>},

@@ -49,7 +49,7 @@ Result<MeshOptions> options_for_planar(MeshOptions options) {
   if (options.min_dihedral_deg != standard.min_dihedral_deg) return refuse("min_dihedral");
   if (std::isfinite(options.max_volume)) return refuse("max_volume");
   if (options.delaunay) return refuse("delaunay");
-  if (!options.curved) return refuse("curved");
+  if (options.curved) return refuse("curved");
   if (options.feature_angle_deg) return refuse("feature_angle");
   if (options.preset != Preset::kNone) return refuse("preset");
   for (const SizeRequest& s : options.sizes) {
@@ -107,7 +107,7 @@ Result<MeshOptions> options_for_solid(ModelKind kind, MeshOptions options) {
         "their markers",
         {}, "/options/feature_angle");
   }
-  if (kind == ModelKind::kPlc && !options.curved) {
+  if (kind == ModelKind::kPlc && options.curved) {
     return fail(
         ErrorCode::kBadOption,
         "curved is for tessellated surfaces (STEP, IGES, STL, OFF, PLY, OBJ); the facets of "

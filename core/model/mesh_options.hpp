@@ -96,9 +96,10 @@ struct MeshOptions {
   double chord_error_rel = 1e-3;   // of chords from their arcs, of the radius
   bool chord_error_given = false;  // solids: edges on curved groups are bounded by it
   std::int32_t order = 1;          // 1: linear, 2: quadratic with mid-side nodes
-  // Surfaces of order 2: vertices and mid-side nodes of the boundary lie on the faces, where these are
-  // planes, cylinders, cones, spheres or tori.
-  bool curved = true;
+  // Surfaces: nodes of the boundary lie on the faces, where these are planes, cylinders, cones, spheres or
+  // tori: of CAD files vertices, of order 2 vertices and mid-side nodes. nullopt: of CAD files, whose faces
+  // are known; of tessellations they are a guess, and the file itself is chords.
+  std::optional<bool> curved;
   std::uint64_t max_elements = 50'000'000;  // of the cell
   double time_limit_s = kInfinity;
   std::uint64_t memory_limit_bytes = 0;  // of the process that meshes; 0: none

@@ -38,7 +38,7 @@ Result<void> curve(const SectorSource& source,
                    const MeshOptions& options,
                    MeshOutcome& outcome,
                    ExecutionContext& context) {
-  const auto faces = options.curved ? source.curved_boundary(outcome.mesh, options) : nullptr;
+  const auto faces = source.curved_boundary(outcome.mesh, options);
   if (!faces) {
     if (options.order == 2) outcome.mesh = elevate_to_quadratic(outcome.mesh);
     return {};

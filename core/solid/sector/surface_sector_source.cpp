@@ -433,10 +433,14 @@ Result<void> SurfaceSectorSource::label_boundary(SymmetryCellMesh& cell,
   return solid::label_boundary(groups_, full_, tree_, cell, context);
 }
 
+bool SurfaceSectorSource::curves(const MeshOptions& options) const {
+  // Of a tessellation order 1 is as good as the mesh's own triangles.
+  return options.curved.value_or(is_cad_) && (is_cad_ || options.order == 2);
+}
+
 std::unique_ptr<CurvedBoundary> SurfaceSectorSource::curved_boundary(
     const SymmetryCellMesh& cell, const MeshOptions& options) const {
-  // Of a tessellation order 1 is as good as the mesh's own triangles.
-  if (groups_.piece_fits.empty() || !(is_cad_ || options.order == 2)) return nullptr;
+  if (groups_.piece_fits.empty() || !curves(options)) return nullptr;
   const CurvingBounds bounds{allowed_,           options.radius_edge, options.max_edge,
                              options.max_volume, sizes_.get(),        is_cad_};
   return std::make_unique<CurvedBoundary>(groups_, full_, tree_, cell, bounds);
@@ -453,7 +457,7 @@ Result<void> SurfaceSectorSource::find_groups(const TriangleSurface& given,
   how.noise = noise_;
   how.sector = options.sector;
   is_cad_ = given.cad_notes.has_value();
-  how.pieces = options.curved && (is_cad_ || options.order == 2);
+  how.pieces = curves(options);
   how.farthest = allowed_;
   auto found = find_face_groups(full_, tree_, given, how, context);
   if (!found) return error_of(found);

@@ -112,7 +112,10 @@ class SurfaceSectorSource final : public SectorSource {
   TriangleTree tree_;            // of the input
   std::vector<Point3> samples_;  // of the input
   FaceGroups groups_;            // of the input
-  bool is_cad_ = false;          // groups have exact shapes
+  // Whether nodes of the boundary go to its faces.
+  [[nodiscard]] bool curves(const MeshOptions& options) const;
+
+  bool is_cad_ = false;  // groups have exact shapes
   std::vector<SizeSource> size_sources_;
   double gradation_ = kStandardGradation;
   std::shared_ptr<const SizeField> sizes_;  // of the sources, at this fold
