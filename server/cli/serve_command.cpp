@@ -45,6 +45,7 @@ struct ServeFlags {
   std::size_t workers = std::max(1U, std::thread::hardware_concurrency());
   std::size_t http_threads = 16;
   std::size_t patient_threads = 512;
+  std::size_t max_waiting = 4096;
   std::size_t max_connections = 4096;
   std::size_t max_connections_per_client = 1024;
   std::size_t queue_limit = 100;
@@ -88,10 +89,16 @@ void add_network_flags(CLI::App& command, ServeFlags& flags) {
       ->capture_default_str();
   command
       .add_option("--patient-threads", flags.patient_threads,
-                  "Requests at once that wait for their client or for a job: uploads, downloads, "
-                  "event streams, waits")
+                  "Requests at once that wait for their client: uploads, downloads")
       ->envname("SYMCELL_PATIENT_THREADS")
       ->check(CLI::Range(2, 8192))
+      ->capture_default_str();
+  command
+      .add_option("--max-waiting", flags.max_waiting,
+                  "Event streams and calls that wait for a job, at once; no client gets more than "
+                  "half of them. They take no thread")
+      ->envname("SYMCELL_MAX_WAITING")
+      ->check(CLI::Range(2, 1'000'000))
       ->capture_default_str();
   command
       .add_option("--max-connections", flags.max_connections,
@@ -287,6 +294,7 @@ server::ServiceSettings settings_of(const ServeFlags& flags) {
   settings.http.port = flags.port;
   settings.http.threads = flags.http_threads;
   settings.http.patient_threads = flags.patient_threads;
+  settings.http.max_waiting = flags.max_waiting;
   settings.http.lobby.connections = flags.max_connections;
   settings.http.lobby.connections_per_client = flags.max_connections_per_client;
   settings.http.max_body_bytes = flags.max_body_bytes;

@@ -51,6 +51,7 @@ void refuse_broken(Call& call, const char* detail) {
 }
 
 void refuse_file(Call& call, InflatingFile::Fault fault, std::size_t max_bytes) {
+  if (fault == InflatingFile::Fault::kRefused) return;  // whoever gave the guard tells
   if (fault == InflatingFile::Fault::kTooLarge) {
     refuse_size(call, max_bytes);
   } else if (fault == InflatingFile::Fault::kTooDense) {
@@ -131,7 +132,12 @@ std::optional<ArrivedBytes> receive_bytes(Call& call,
                                           const std::filesystem::path& destination,
                                           std::size_t max_bytes) {
   InflatingFile file(destination, max_bytes, kHeldBytes);
-  if (!receive_into(call, file, max_bytes)) return std::nullopt;
+  JsonGuard guard;
+  file.guard_by(guard);
+  if (!receive_into(call, file, max_bytes)) {
+    if (file.fault() == InflatingFile::Fault::kRefused) respond_error(call, guard.error(), "");
+    return std::nullopt;
+  }
   if (file.is_held()) return ArrivedBytes(std::move(file.held()));
   return ArrivedBytes(ArrivedFile(destination));
 }

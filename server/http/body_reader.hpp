@@ -70,7 +70,8 @@ struct ArrivedForm {
                                                       const std::filesystem::path& destination,
                                                       std::size_t max_bytes);
 
-// The same, for whoever takes it apart. `destination`: where it goes if it is not small.
+// The same of JSON, for whoever takes it apart; what no model may be is refused before all has come.
+// `destination`: where it goes if it is not small.
 [[nodiscard]] std::optional<ArrivedBytes> receive_bytes(Call& call,
                                                         const std::filesystem::path& destination,
                                                         std::size_t max_bytes);

@@ -15,6 +15,7 @@
 #include "server/http/lobby.hpp"
 #include "server/http/request_head.hpp"
 #include "server/http/stop_signal.hpp"
+#include "server/http/suspended_calls.hpp"
 #include "server/keys/api_key.hpp"
 
 namespace symcell::server {
@@ -40,6 +41,8 @@ class ConnectionStream final : public httplib::Stream {
   ConnectionStream& operator=(const ConnectionStream&) = delete;
 
   [[nodiscard]] std::uint64_t bytes_written() const { return written_; }
+  // While `silent` is true what is written goes nowhere.
+  void silence_by(const bool& silent) { silent_ = &silent; }
   // httplib::Stream
   [[nodiscard]] bool is_readable() const override;
   [[nodiscard]] bool is_writable() const override;
@@ -72,6 +75,7 @@ class ConnectionStream final : public httplib::Stream {
   std::optional<ChunkGuard> guard_;  // of a chunked body
   std::uint64_t read_ = 0;
   std::uint64_t written_ = 0;
+  const bool* silent_ = nullptr;
   Pace reading_;
   Pace writing_;
 };
@@ -102,6 +106,12 @@ struct Exchange {
   bool body_expected = false;        // the request announces a body
   bool body_consumed = false;        // and it was read to its end
   bool close = false;                // the connection cannot serve another request
+  // The call goes on without a thread. What the handler has answered until then is only kept headers of, unless
+  // the call has begun to send by itself.
+  std::shared_ptr<SuspendedCall> suspended;
+  bool silent = false;   // nothing of the answer is sent yet
+  bool resumed = false;  // it goes on: `suspended` makes the answer
+  httplib::Headers kept_headers;
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
 

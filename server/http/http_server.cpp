@@ -11,6 +11,7 @@
 #include <exception>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "server/base/clock.hpp"
 #include "server/base/identifiers.hpp"
@@ -29,11 +30,12 @@ constexpr int kListenBacklog = 511;
 constexpr std::size_t kMaxKeepAliveRequests = 1000;
 constexpr std::size_t kProbeThreads = 2;
 constexpr std::size_t kMostQueuedProbes = 256;
-// Requests that have come and wait for a thread; each is answered at once when it has one.
-constexpr std::size_t kQueuedPerThread = 64;
-// Ends of addresses whose answers are as long as a client is slow, or as a job runs.
-constexpr std::array kStreamedEnds{"/events", "/cell",       "/full",
-                                   "/model",  "/statistics", "/v1/inspect"};
+// That tell those who wait of their jobs. What they send is short, but a client may not read it.
+constexpr std::size_t kResumingThreads = 16;
+// What httplib reads where a call goes on whose request it has read before.
+constexpr std::string_view kResumption = "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n";
+// Ends of addresses whose answers are as long as a client is slow.
+constexpr std::array kStreamedEnds{"/cell", "/full", "/model", "/statistics", "/v1/inspect"};
 // What a form has besides its model; the body reader counts exactly.
 constexpr std::size_t kFormOverheadBytes = 128UL * 1024;
 // For requests under way when the server stops; the jobs have had their grace period before.
@@ -79,7 +81,8 @@ class HttpServer::Impl final : public httplib::Server {
             [this](const std::shared_ptr<Connection>& connection) { return take(connection); },
             [this] { return refusal(); },
             tls_.get()),
-        quick_(settings.threads, kQueuedPerThread * settings.threads),
+        // A connection has one request at most that waits for a thread.
+        quick_(settings.threads, settings.lobby.connections),
         patient_(settings.patient_threads, 0) {
     // A second line only: the body reader counts exactly, and forms need some room for headers.
     set_payload_max_length(settings_.max_body_bytes + (1UL << 20U));
@@ -117,6 +120,7 @@ class HttpServer::Impl final : public httplib::Server {
   void run() {
     lobby_.run(listening_);
     for (Crew* crew : {&quick_, &patient_, &probes_}) crew->shutdown();
+    suspended_.shutdown();
     lobby_.finish(kStopPatience);
   }
 
@@ -227,7 +231,19 @@ class HttpServer::Impl final : public httplib::Server {
     response.status = 200;
     const std::string shared = sites_.shared_with(call.header("Origin"));
     if (!shared.empty()) response.set_header("Access-Control-Allow-Origin", shared);
-    if (check_site(call)) router_.dispatch(call);
+    if (exchange.resumed) {
+      for (const auto& [name, value] : exchange.kept_headers) {
+        if (!response.has_header(name)) response.set_header(name, value);
+      }
+      router_.resume(
+          call, [&](Call& resumed) { static_cast<void>(exchange.suspended->answer(resumed)); });
+    } else if (check_site(call)) {
+      router_.dispatch(call);
+    }
+    if (exchange.suspended && !exchange.resumed) {
+      exchange.silent = true;
+      exchange.kept_headers = response.headers;
+    }
     if (exchange.body_expected && !exchange.body_consumed) exchange.close = true;
     if (exchange.close) response.set_header("Connection", "close");
     if (!call.error_code.empty()) {
@@ -261,6 +277,10 @@ class HttpServer::Impl final : public httplib::Server {
 
   // Called by httplib once the headers are read.
   static void prepare(httplib::Request& request, Exchange& exchange) {
+    if (exchange.resumed) {
+      exchange.body_expected = false;
+      return;
+    }
     exchange.method = request.method;
     exchange.path = request.path;
     const std::string id = request.get_header_value("X-Request-Id");
@@ -289,7 +309,7 @@ class HttpServer::Impl final : public httplib::Server {
                          connection.bytes.size() >= connection.head.length() + head.content_length;
     const bool streams =
         std::ranges::any_of(kStreamedEnds, [&](const char* end) { return path.ends_with(end); });
-    return arrived && !streams && !head.prefers_wait ? Lane::kQuick : Lane::kPatient;
+    return arrived && !streams ? Lane::kQuick : Lane::kPatient;
   }
 
   // False: nobody is free.
@@ -300,27 +320,60 @@ class HttpServer::Impl final : public httplib::Server {
       case Lane::kQuick: break;
       case Lane::kPatient: crew = &patient_; break;
     }
-    return crew->try_enqueue([this, connection] {
-      if (serve(*connection)) {
-        lobby_.give_back(connection);
-      } else {
-        lobby_.let_go(connection);
-      }
-    });
+    return crew->try_enqueue([this, connection] { serve(connection); });
   }
 
-  // False: the connection must be closed.
-  bool serve(Connection& connection) {
+  void serve(const std::shared_ptr<Connection>& connection) {
+    auto exchange = std::make_shared<Exchange>();
+    exchange->request_id = make_random_hex();
+    exchange->client = connection->client();
+    exchange->declared_bytes = connection->head.head().content_length;
+    const bool last = ++connection->served == kMaxKeepAliveRequests;
+    go_on(connection, exchange, answer(*connection, *exchange, last));
+  }
+
+  // What becomes of a connection after httplib had it. `goes_on`: it can serve another request.
+  void go_on(const std::shared_ptr<Connection>& connection,
+             const std::shared_ptr<Exchange>& exchange,
+             bool goes_on) {
+    if (exchange->suspended && !exchange->resumed) {
+      suspended_.add(exchange->suspended, connection, [this, connection, exchange, goes_on] {
+        resume(connection, exchange, goes_on);
+      });
+    } else if (goes_on && !exchange->close && svr_sock_ != INVALID_SOCKET) {
+      lobby_.give_back(connection);
+    } else {
+      lobby_.let_go(connection);
+    }
+  }
+
+  // The call is over; unless it has sent all by itself, httplib writes its answer.
+  void resume(const std::shared_ptr<Connection>& connection,
+              const std::shared_ptr<Exchange>& exchange,
+              bool goes_on) {
+    exchange->resumed = true;
+    if (!exchange->silent) {
+      record(*exchange, 0);
+      lobby_.let_go(connection);
+      return;
+    }
+    exchange->silent = false;
+    std::string next = std::exchange(connection->bytes, std::string(kResumption));
+    connection->head = {};
+    static_cast<void>(connection->head.add(connection->bytes));
+    const bool sound = answer(*connection, *exchange, !goes_on || exchange->close);
+    connection->bytes.append(next);
+    go_on(connection, exchange, sound && goes_on);
+  }
+
+  // Has httplib answer a request. False: the connection must be closed.
+  bool answer(Connection& connection, Exchange& exchange, bool last) {
     ++in_flight_;
-    Exchange exchange;
-    exchange.request_id = make_random_hex();
-    exchange.client = connection.client();
-    exchange.declared_bytes = connection.head.head().content_length;
     current_exchange = &exchange;
-    const bool last = ++connection.served == kMaxKeepAliveRequests || svr_sock_ == INVALID_SOCKET;
     ConnectionLimits limits;
     limits.window = settings_.pace_window;
     ConnectionStream stream(connection, stop_, limits);
+    stream.silence_by(exchange.silent);
     bool closed = false;
     bool sound = false;
     const HeadFault& fault = connection.head.fault();
@@ -331,7 +384,7 @@ class HttpServer::Impl final : public httplib::Server {
     } else {
       // What produces a body on its way, a stored file for instance, may fail beyond all answers.
       try {
-        sound = process_request(stream, last, closed,
+        sound = process_request(stream, last || svr_sock_ == INVALID_SOCKET, closed,
                                 [&](httplib::Request& request) { prepare(request, exchange); });
       } catch (const std::exception& exception) {
         logger_.error("answer_broke_off", {{"request_id", std::string_view(exchange.request_id)},
@@ -341,8 +394,9 @@ class HttpServer::Impl final : public httplib::Server {
     }
     current_exchange = nullptr;
     --in_flight_;
-    if (exchange.status != 0) record(exchange, stream.bytes_written());
-    return sound && !closed && !last && !exchange.close && svr_sock_ != INVALID_SOCKET;
+    const bool over = !exchange.suspended || exchange.resumed;
+    if (exchange.status != 0 && over) record(exchange, stream.bytes_written());
+    return sound && !closed && !last;
   }
 
   // Where the next request begins is anyone's guess: the connection ends.
@@ -420,6 +474,7 @@ class HttpServer::Impl final : public httplib::Server {
   Crew probes_{kProbeThreads, kMostQueuedProbes};
   Crew quick_;
   Crew patient_;
+  SuspendedCalls suspended_{kResumingThreads};
 };
 
 HttpServer::HttpServer(const HttpSettings& settings,

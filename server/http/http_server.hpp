@@ -3,8 +3,9 @@
 // answer.
 //
 // A request gets a thread when its head and, if small, its body have come. Probes have threads of
-// their own; what may wait long, for the rest of a body, for a slow reader or for a job, has others
-// than what is answered at once. So neither slow clients nor waiting ones hold up the rest.
+// their own; what may wait long, for the rest of a body or for a slow reader, has others than what is
+// answered at once; what waits for a job has none until there is something to say. So neither slow clients
+// nor waiting ones hold up the rest.
 #pragma once
 
 #include <atomic>
@@ -25,7 +26,8 @@ struct HttpSettings {
   std::string host = "127.0.0.1";
   int port = 8080;                    // 0: any free one
   std::size_t threads = 16;           // for what is answered at once
-  std::size_t patient_threads = 512;  // for what waits for its client, or for a job
+  std::size_t patient_threads = 512;  // for what waits for its client
+  std::size_t max_waiting = 4096;  // calls that wait for a job, and event streams: without a thread
   LobbyLimits lobby;
   std::chrono::milliseconds pace_window{20'000};  // see ConnectionLimits
   std::size_t max_body_bytes = 0;

@@ -29,6 +29,10 @@ bool InflatingFile::store(std::string_view piece) {
     fault_ = Fault::kTooDense;
     return false;
   }
+  if (guard_ != nullptr && !guard_->pass(piece)) {
+    fault_ = Fault::kRefused;
+    return false;
+  }
   size_ += piece.size();
   if (!file_ && size_ <= held_bytes_) {
     held_.append(piece);

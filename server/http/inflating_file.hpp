@@ -11,6 +11,7 @@
 
 #include "server/base/files.hpp"
 #include "server/http/gzip.hpp"
+#include "server/http/json_guard.hpp"
 
 namespace symcell::server {
 
@@ -21,7 +22,10 @@ class InflatingFile {
                 std::size_t max_bytes,
                 std::size_t held_bytes = 0);
 
-  enum class Fault : std::uint8_t { kNone, kTooLarge, kTooDense, kDamaged };
+  enum class Fault : std::uint8_t { kNone, kTooLarge, kTooDense, kDamaged, kRefused };
+
+  // Is shown what is stored, before; where it refuses, that is the fault. Must outlive the file.
+  void guard_by(JsonGuard& guard) { guard_ = &guard; }
 
   // Bytes that came for what is added from now on, where a coding was taken off before; else those
   // added count.
@@ -48,6 +52,7 @@ class InflatingFile {
   std::size_t max_bytes_;
   std::size_t held_bytes_;
   std::uint64_t size_ = 0;
+  JsonGuard* guard_ = nullptr;
   Fault fault_ = Fault::kNone;
   std::uint64_t came_ = 0;
   bool counted_outside_ = false;

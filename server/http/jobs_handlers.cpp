@@ -56,22 +56,70 @@ bool is_usable_key(const std::string& key) {
          std::ranges::all_of(key, [](char c) { return c >= 0x20 && c < 0x7f; });
 }
 
-// 201 with the finished job if it ends in time, else 202.
-void respond_accepted(Call& call, Job job, ServiceContext& context) {
+// 201 with the finished job, else 202.
+void respond_state(Call& call, const Job& job, ServiceContext& context) {
+  // Only an end is known to last.
+  if (!is_finished(job.state)) context.jobs.make_durable();
+  respond_job(call, is_finished(job.state) ? 201 : 202, job, context);
+}
+
+// A submission whose sender waits for the job's end.
+class WaitingCall final : public SuspendedCall {
+ public:
+  WaitingCall(Job job, ServiceContext& context, Clock::time_point deadline, Slots::Slot place)
+      : job_(std::move(job)), context_(context), deadline_(deadline), place_(std::move(place)) {}
+
+  std::shared_ptr<void> watch(std::function<void()> wake) override {
+    return context_.jobs.changes().watch(job_.id, std::move(wake));
+  }
+
+  bool look(Connection& /*connection*/) override {
+    if (Clock::now() >= deadline_ || context_.jobs.stopping()) return true;
+    // What runs here has not ended; the runner tells when it has.
+    if (context_.jobs.runner().progress(job_.id)) return false;
+    try {
+      const auto found = context_.jobs.find(job_.id);
+      return !found || is_finished(found->state);
+    } catch (const StoreError&) {
+      return true;
+    }
+  }
+
+  [[nodiscard]] Clock::time_point look_again_at() const override { return deadline_; }
+
+  bool answer(Call& call) override {
+    if (auto found = context_.jobs.find(job_.id)) job_ = std::move(*found);
+    place_.reset();
+    respond_state(call, job_, context_);
+    return true;
+  }
+
+ private:
+  Job job_;
+  ServiceContext& context_;
+  const Clock::time_point deadline_;
+  Slots::Slot place_;
+};
+
+// At once, or when the job has ended, as the caller prefers.
+void respond_accepted(Call& call, const Job& job, ServiceContext& context) {
   call.response.set_header("Location", job_path(job));
   const auto wait = prefer_wait_seconds(call.header("Prefer"));
   // No place among those who wait: a preference may be left unmet.
-  const Slots::Slot place = wait ? context.streams.try_take(call.exchange.caller.client) : nullptr;
-  if (place) {
-    const std::int64_t seconds = std::min(*wait, kMaxWaitSeconds);
-    call.response.set_header("Preference-Applied", "wait=" + std::to_string(seconds));
-    auto waited = context.jobs.wait_finished(
-        job.id, ChangeSignal::Clock::now() + std::chrono::seconds(seconds));
-    if (waited) job = std::move(*waited);
+  Slots::Slot place = wait ? context.streams.try_take(call.exchange.caller.client) : nullptr;
+  if (!place) {
+    context.jobs.make_durable();
+    respond_job(call, 202, job, context);
+    return;
   }
-  // Only an end is known to last.
-  if (!is_finished(job.state)) context.jobs.make_durable();
-  respond_job(call, place && is_finished(job.state) ? 201 : 202, job, context);
+  const std::int64_t seconds = std::min(*wait, kMaxWaitSeconds);
+  call.response.set_header("Preference-Applied", "wait=" + std::to_string(seconds));
+  if (is_finished(job.state)) {
+    respond_state(call, job, context);
+    return;
+  }
+  call.exchange.suspended = std::make_shared<WaitingCall>(
+      job, context, SuspendedCall::Clock::now() + std::chrono::seconds(seconds), std::move(place));
 }
 
 void respond_unknown_job(Call& call) {

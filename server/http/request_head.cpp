@@ -81,6 +81,11 @@ bool HeadReader::refuse(int status, std::string detail) {
 }
 
 bool HeadReader::add(std::string_view bytes) {
+  // Another protocol, TLS for instance, need not send a line's end ever.
+  if (lines_ == 0 && bytes.size() > length_ && !is_token_character(bytes[length_]) &&
+      bytes[length_] != '\r' && bytes[length_] != '\n') {
+    return refuse(kBadRequest, "this is no request of HTTP/1.1");
+  }
   while (true) {
     const std::size_t end = bytes.find('\n', std::max(scanned_, length_));
     if (end == std::string_view::npos) {

@@ -96,9 +96,19 @@ void Router::refuse_method(Call& call, const std::string& allowed) const {
 }
 
 void Router::run(const Route& route, Call& call) const {
+  guard(call, [&] {
+    if (gate_ == nullptr || gate_->admit(call, route.path)) route.handler(call);
+  });
+}
+
+void Router::resume(Call& call, const RouteHandler& handler) const {
+  guard(call, [&] { handler(call); });
+}
+
+void Router::guard(Call& call, const std::function<void()>& work) const {
+  const std::string& path = call.exchange.route;
   try {
-    if (gate_ != nullptr && !gate_->admit(call, route.path)) return;
-    route.handler(call);
+    work();
     return;
   } catch (const StoreError& error) {
     // Told and counted by the store's watch.
@@ -110,7 +120,7 @@ void Router::run(const Route& route, Call& call) const {
     }
     return;
   } catch (const StoredFileDamaged& damaged) {
-    logger_.error("stored_file_damaged", {{"route", route.path}, {"what", damaged.what()}});
+    logger_.error("stored_file_damaged", {{"route", path}, {"what", damaged.what()}});
     metrics_.count("symcell_internal_errors_total", {{"where", "stored_file"}});
     respond_problem(call, ServiceProblem::kStoredFileDamaged,
                     std::string(damaged.what()) + "; submit the job again");
@@ -121,13 +131,13 @@ void Router::run(const Route& route, Call& call) const {
       respond_problem(call, ServiceProblem::kStorageFull, "the disk is full; try again later");
       return;
     }
-    logger_.error("handler_threw", {{"route", route.path}, {"what", error.what()}});
+    logger_.error("handler_threw", {{"route", path}, {"what", error.what()}});
   } catch (const std::exception& exception) {
-    logger_.error("handler_threw", {{"route", route.path},
-                                    {"what", exception.what()},
-                                    {"request_id", call.exchange.request_id}});
+    logger_.error(
+        "handler_threw",
+        {{"route", path}, {"what", exception.what()}, {"request_id", call.exchange.request_id}});
   } catch (...) {
-    logger_.error("handler_threw", {{"route", route.path}, {"what", "not an std::exception"}});
+    logger_.error("handler_threw", {{"route", path}, {"what", "not an std::exception"}});
   }
   metrics_.count("symcell_internal_errors_total", {{"where", "http"}});
   respond_problem(call, ServiceProblem::kInternal,

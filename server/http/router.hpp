@@ -31,6 +31,8 @@ class Router {
   // Answers the call whatever happens: unknown paths with 404, other methods with 405 and Allow,
   // exceptions with 500 (507 if the disk is full, 503 if the store fails).
   void dispatch(Call& call) const;
+  // The same for a call that is resumed.
+  void resume(Call& call, const RouteHandler& handler) const;
 
  private:
   struct Route {
@@ -41,6 +43,7 @@ class Router {
   };
 
   void run(const Route& route, Call& call) const;
+  void guard(Call& call, const std::function<void()>& work) const;
   void refuse_method(Call& call, const std::string& allowed) const;
 
   Metrics& metrics_;

@@ -11,11 +11,6 @@
 namespace symcell::server {
 namespace {
 
-// Half of those threads always remain for uploads and downloads.
-std::size_t long_call_places(std::size_t threads) {
-  return std::max<std::size_t>(1, threads / 2);
-}
-
 std::size_t inspection_places(std::size_t threads) {
   return std::max<std::size_t>(1, threads / 4);
 }
@@ -54,7 +49,7 @@ struct Service::Impl {
         jobs(settings.data_directory, settings.jobs, engine, metrics, logger),
         webhook_rules(settings.webhooks),
         webhooks(settings.webhooks, webhook_rules, jobs, metrics, logger),
-        streams(long_call_places(settings.http.patient_threads)),
+        streams(settings.http.max_waiting),
         inspections(inspection_places(settings.http.threads)),
         gate(settings.access, settings.http.host, jobs, metrics, logger),
         router(metrics, logger),

@@ -19,10 +19,10 @@ struct ServiceContext {
   Metrics& metrics;
   Logger& logger;
   std::size_t max_body_bytes;
-  // Places for calls that hold an HTTP thread for long; fewer than there are threads, so that
-  // other calls always find one.
-  SharedSlots& streams;  // event streams and waits for a job
-  Slots& inspections;    // work on the processor
+  SharedSlots& streams;  // places for event streams and waits for a job
+  // For calls that hold an HTTP thread for long, with work for the processor; fewer than there are threads, so
+  // that other calls always find one.
+  Slots& inspections;
   const std::atomic<std::size_t>& requests_in_flight;
   const WebhookRules& webhooks;
 };

@@ -1,6 +1,8 @@
 #include "server/jobs/job_service.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -51,6 +53,21 @@ void settle_or_erase(JobStore& store, const JobFiles& files, const std::string& 
   }
 }
 
+// Models of servers that died, or lost their database, before they had a row for them. Younger ones may be
+// another server's that is about to write it.
+void remove_stale(const JobFiles& files, JobStore& store) {
+  constexpr std::chrono::hours kStaleAge{24};
+  const auto before = std::filesystem::file_time_type::clock::now() - kStaleAge;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(files.database().parent_path() / "jobs")) {
+    const auto id = staged_job(entry.path().filename().native());
+    if (!id || !entry.is_directory() || entry.is_symlink()) continue;
+    std::error_code error;
+    if (entry.last_write_time(error) > before || error) continue;
+    if (!store.find(*id)) discard_staged(files, *id);
+  }
+}
+
 }  // namespace
 
 JobService::JobService(const std::filesystem::path& data_directory,
@@ -91,7 +108,11 @@ JobService::~JobService() {
 
 void JobService::start() {
   // What others are about to store, or run, would look like what a dead server left.
-  if (!store_->shared()) take_up_what_was_left();
+  if (store_->shared()) {
+    remove_stale(files_, *store_);
+  } else {
+    take_up_what_was_left();
+  }
   if (store_->keeps_copies()) copies_ = std::make_unique<CopyKeeper>(*store_, files_, logger_);
   runner_->start();
   retention_ = std::make_unique<RetentionKeeper>(limits_.retention, *store_, files_, logger_);
@@ -256,6 +277,11 @@ SubmitOutcome JobService::store_job(const Submission& submission,
       case InsertResult::kQueueFull: return {SubmitStatus::kQueueFull, {}};
       case InsertResult::kBytesSpent: return {SubmitStatus::kBytesSpent, {}};
     }
+  } catch (const StoreError&) {
+    // A database that went away may have the row. Then the job will be asked for again, by its key for
+    // instance, and run; else remove_stale() has the model.
+    if (!store_->shared()) discard_staged(files_, job.id);
+    throw;
   } catch (...) {
     discard_staged(files_, job.id);
     throw;

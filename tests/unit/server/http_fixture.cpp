@@ -27,6 +27,7 @@ void HttpTest::start() {
   settings.http.port = 0;
   settings.http.threads = 8;
   settings.http.patient_threads = 8;
+  settings.http.max_waiting = 8;
   settings.http.allowed_hosts = {"x"};  // what requests made by hand call the server
   settings.http.max_body_bytes = 1UL << 20U;
   settings.jobs.workers = 1;
