@@ -26,15 +26,14 @@ namespace symcell::cad {
   return upper == "NONE" || upper == "UNNAMED" ? std::string() : name;
 }
 
-// One name on all faces is that of the part, or of the program that wrote the file.
-inline void drop_empty_names(FaceLabels& labels) {
-  std::string first;
-  bool differ = false;
+// One name on all faces is that of the part, or of the program that wrote the file. The order of the faces is
+// that of their addresses, and must not matter.
+inline void drop_name_of_all(FaceLabels& labels) {
+  if (labels.IsEmpty()) return;
+  const std::string first = FaceLabels::Iterator(labels).Value().name;
   for (FaceLabels::Iterator i(labels); i.More(); i.Next()) {
-    if (first.empty()) first = i.Value().name;
-    differ = differ || i.Value().name != first;
+    if (i.Value().name != first) return;
   }
-  if (differ) return;
   for (FaceLabels::Iterator i(labels); i.More(); i.Next()) i.ChangeValue().name.clear();
 }
 

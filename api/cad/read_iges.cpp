@@ -90,7 +90,7 @@ FileShapes read_iges(const Request& request) {
     const TopoDS_Shape face = e.Current().Located(TopLoc_Location());
     if (!result.labels.IsBound(face)) result.labels.Bind(face, label_of(transfer, face));
   }
-  drop_empty_names(result.labels);
+  drop_name_of_all(result.labels);
   return result;
 }
 

@@ -113,7 +113,7 @@ FileShapes read_step(const Request& request) {
     }
   }
   read_colours(session, result);
-  drop_empty_names(result.labels);
+  drop_name_of_all(result.labels);
   return result;
 }
 

@@ -355,6 +355,7 @@ Result<void> check_loose(const LooseCell& loose, const SymmetryCellMesh& cell) {
   data.axis_origin = loose.axis_origin;
   data.axis_direction = loose.axis_direction;
   data.points = loose.points;
+  data.curved = true;  // it may have been asked for
   data.nodes_per_element = cell.nodes_per_element;
   data.elements = loose.elements;
   data.regions = loose.regions;

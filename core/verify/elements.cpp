@@ -249,10 +249,10 @@ bool check_mid_nodes(const FacetedMesh& faceted, const std::string& tag, Checks&
         distance(0.5 * (a + b), m) / std::max(distance(a, b), std::numeric_limits<double>::min());
     worst = std::max(worst, off);
     // Of a solid only edges of its boundary may follow curved faces.
-    const bool may_be_off =
-        mesh.dimension == 2
-            ? may_be_on_arc(a, m, b)
-            : off <= kFaceTolerance && std::ranges::binary_search(outer, std::array{e.low, e.high});
+    const bool may_be_off = mesh.dimension == 2
+                                ? may_be_on_arc(a, m, b)
+                                : mesh.curved && off <= kFaceTolerance &&
+                                      std::ranges::binary_search(outer, std::array{e.low, e.high});
     if (off > kMidTolerance && !may_be_off) {
       flaws.note([&] { return name() + ": its mid node is off by " + shown(off) + " of it"; });
     }

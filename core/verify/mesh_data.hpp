@@ -18,6 +18,8 @@ struct MeshData {
   Point3 axis_direction{0, 0, 1};
 
   std::vector<Point3> points;
+  // Solids of order 2: edges of the boundary may follow curved faces. Nothing in a file says so.
+  bool curved = false;
   bool single_precision = false;  // the file has coordinates of 32 bits
   std::int32_t nodes_per_element = 3;
   std::vector<std::int32_t> elements;  // indices of points, each in range

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/verify/verify_mesh.hpp"
@@ -37,6 +38,7 @@ struct VerifyArguments {
   std::optional<double> symmetry_tolerance;
   std::vector<double> center;
   std::string repair = "safe";
+  bool curved = false;
   bool json = false;
   bool quiet = false;
   bool json_errors = false;
@@ -71,7 +73,7 @@ void print_report(const VerifyReport& report, const VerifyArguments& arguments) 
 }
 
 Result<bool> verify(const VerifyArguments& arguments) {
-  const Result<MeshData> cell = read_mesh_file(arguments.cell);
+  Result<MeshData> cell = read_mesh_file(arguments.cell);
   if (!cell) return error_of(cell);
   std::optional<MeshData> full;
   if (!arguments.full.empty()) {
@@ -96,6 +98,9 @@ Result<bool> verify(const VerifyArguments& arguments) {
     if (!read) return error_of(read);
     model = std::move(*read);
   }
+  const auto* surface = model ? std::get_if<TriangleSurface>(&*model) : nullptr;
+  cell->curved = arguments.curved || (surface != nullptr && surface->cad_notes);
+  if (full) full->curved = cell->curved;
   const VerifyReport report =
       verify_mesh(*cell, full ? &*full : nullptr, model ? &*model : nullptr, options);
   print_report(report, arguments);
@@ -154,6 +159,10 @@ void add_verify_command(CLI::App& app, int& exit_code) {
   command->add_option("--repair", arguments->repair, "planar: as the model was meshed with [safe]")
       ->type_name("none|safe|all")
       ->check(CLI::IsMember({"none", "safe", "all"}));
+  command->add_flag(
+      "--curved", arguments->curved,
+      "order 2: edges of the boundary may follow curved faces, as they do where the model\nis "
+      "STEP or IGES, or was meshed with curved=true");
   command->add_flag("--json", arguments->json, "the report as JSON");
   command->add_flag("-q,--quiet", arguments->quiet, "print failures only");
   command->add_flag("--json-errors", arguments->json_errors,

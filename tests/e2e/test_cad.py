@@ -70,6 +70,7 @@ class CadTest(unittest.TestCase):
         answer = self.server.request("POST", "/v1/inspect", part("coloured.step"), {"Content-Type": "model/step"})
         self.assertEqual(answer.status, 200, answer.body)
         groups = {g["name"]: g for g in answer.json()["groups"]}
+        self.assertIn("shaft seat", groups, answer.body)
         self.assertEqual(groups["shaft seat"]["color"], "#ff0000")
 
     def test_what_crashes_the_reader_ends_nothing_else(self):

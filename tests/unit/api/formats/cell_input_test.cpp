@@ -19,8 +19,8 @@ using test::written;
 
 std::vector<SymmetryCellMesh> cells() {
   std::vector<SymmetryCellMesh> all{test::disc_cell(4, 1, {3, -1}), test::square_cell(),
-                                    test::disc_cell(2, 1, {0, 0}), test::disc_cell(7, 2, {1, 1})};
-  for (const std::int32_t fold : {2, 5}) {
+                                    test::disc_cell(3, 1, {0, 0}), test::disc_cell(7, 2, {1, 1})};
+  for (const std::int32_t fold : {3, 5}) {
     test::Extrusion how;
     how.layers = 2;
     how.height = 1.5;
@@ -115,6 +115,48 @@ TEST(CellInput, OtherFilesAreRefused) {
   }
   json["elements"][0][0] = 1000000;
   EXPECT_FALSE(read_cell(json.dump()));
+}
+
+// Each would become a wrong full mesh, or end the program.
+TEST(CellInput, CellsWhoseCopiesDoNotFitAreRefused) {
+  test::Extrusion how;
+  how.layers = 2;
+  how.height = 1.5;
+  const SymmetryCellMesh cell = test::extruded_cell(test::disc_cell(5, 1, {0, 0}), how);
+  using Json = nlohmann::json;
+  const Json good = Json::parse(written(cell, MeshPart::kCell, MeshFormat::kJson));
+  ASSERT_TRUE(read_cell(good.dump()));
+  const auto refused = [&](const char* pointer, const Json& value, const char* why) {
+    Json damaged = good;
+    damaged[Json::json_pointer(pointer)] = value;
+    const auto read = read_cell(damaged.dump());
+    ASSERT_FALSE(read) << pointer << ": " << value;
+    EXPECT_NE(read.error().message.find(why), std::string::npos) << read.error().message;
+    EXPECT_EQ(read.error().message.find("exception"), std::string::npos) << read.error().message;
+  };
+  refused("/fold", 6, "cell.pairs");
+  refused("/fold", 5.5, "no integer");
+  refused("/dimension", 4, "dimension");
+  refused("/axis/direction", {0, 0, 0}, "axis");
+  refused("/axis/direction", {0, 1, 0}, "cell.pairs");
+  refused("/nodes/0/0", 1e308, "coordinate");
+  refused("/nodes/0/0", "x", "another type");
+  refused("/elements/0/0", good["elements"][0][1], "cell.corners");
+  refused("/packed", "exact", "without --packed");
+  Json turned = good;
+  std::swap(turned["elements"][0][0], turned["elements"][0][1]);
+  const auto read = read_cell(turned.dump());
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().message.find("cell.orientation"), std::string::npos);
+  const auto cut = read_cell(good.dump().substr(0, 100));
+  ASSERT_FALSE(cut);
+  EXPECT_NE(cut.error().message.find("at byte"), std::string::npos) << cut.error().message;
+
+  Json named = good;
+  named["marker_names"] = {{"1", "two\nlines"}};
+  const auto renamed = read_cell(named.dump());
+  ASSERT_TRUE(renamed);
+  EXPECT_EQ(renamed->marker_names.front().name, "two_lines");
 }
 
 }  // namespace
