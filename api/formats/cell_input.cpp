@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "api/formats/cell_archive.hpp"
 #include "api/formats/gzip.hpp"
@@ -47,7 +48,7 @@ std::size_t mid_of(std::int32_t dimension, std::size_t a, std::size_t b) {
 
 class Rebuilder {
  public:
-  explicit Rebuilder(const LooseCell& loose) : in_(loose) {}
+  explicit Rebuilder(const LooseCell& loose) : loose_(loose), in_(loose.mesh) {}
 
   Result<SymmetryCellMesh> run() {
     SYMCELL_TRY(check_sizes());
@@ -55,15 +56,15 @@ class Rebuilder {
     out_.dimension = in_.dimension;
     out_.order = in_.order;
     out_.fold = in_.fold;
-    out_.shape_tolerance_rel = in_.shape_tolerance_rel;
+    out_.shape_tolerance_rel = static_cast<float>(in_.shape_tolerance_rel);
     out_.nodes_per_element = static_cast<std::int32_t>(nodes_per_element());
     out_.nodes_per_facet = static_cast<std::int32_t>(nodes_per_facet());
     out_.elements = in_.elements;
     out_.regions = in_.regions;
     out_.lower_to_higher = in_.lower_to_higher;
-    out_.node_markers = in_.node_markers;
+    out_.node_markers = in_.markers;
     out_.node_markers.resize(in_.points.size(), 0);
-    out_.marker_names = in_.marker_names;
+    out_.marker_names = loose_.marker_names;
     find_facets();
     return std::move(out_);
   }
@@ -97,11 +98,12 @@ class Rebuilder {
     const auto inside = [&](std::int32_t i) { return i >= 0 && i < count; };
     if (!std::ranges::all_of(in_.elements, inside))
       return misfit("an element's node does not exist");
-    if (!std::ranges::all_of(in_.boundary, inside)) return misfit("a facet's node does not exist");
+    if (!std::ranges::all_of(loose_.boundary, inside))
+      return misfit("a facet's node does not exist");
     if (!std::ranges::all_of(in_.lower_to_higher, [&](std::int32_t i) { return i < count; })) {
       return misfit("a pair's node does not exist");
     }
-    if (in_.boundary.size() != in_.boundary_markers.size() * nodes_per_facet()) {
+    if (loose_.boundary.size() != loose_.boundary_markers.size() * nodes_per_facet()) {
       return misfit("facets have other numbers of nodes than their order says");
     }
     return {};
@@ -217,9 +219,9 @@ class Rebuilder {
       higher[other] = 1;
       lower[key] = 1;
     }
-    if (in_.has_boundary) {
-      out_.boundary = in_.boundary;
-      out_.boundary_markers = in_.boundary_markers;
+    if (loose_.has_boundary) {
+      out_.boundary = loose_.boundary;
+      out_.boundary_markers = loose_.boundary_markers;
     } else {
       for (const auto& [key, nodes] : outer) {
         if (higher.contains(key) || lower.contains(key)) continue;
@@ -239,17 +241,18 @@ class Rebuilder {
   // A node between two groups has the smaller marker: the largest at the facet's nodes is its own, as a
   // rule, and certainly where all have the same.
   [[nodiscard]] std::int32_t common_marker(const std::vector<std::int32_t>& nodes) const {
-    if (in_.node_markers.empty()) return 0;
+    if (in_.markers.empty()) return 0;
     std::int32_t most = 0;
     for (const std::int32_t n : nodes) {
-      const std::int32_t marker = in_.node_markers[at(n)];
+      const std::int32_t marker = in_.markers[at(n)];
       if (marker == 0) return 0;
       most = std::max(most, marker);
     }
     return most;
   }
 
-  const LooseCell& in_;
+  const LooseCell& loose_;
+  const MeshData& in_;
   SymmetryCellMesh out_;
 };
 
@@ -282,17 +285,18 @@ Result<LooseCell> loose_from_json(const Json& json) {
     if (!json.at(name).is_number_integer()) return misfit(std::string(name) + " is no integer");
   }
   LooseCell cell;
-  cell.dimension = json.at("dimension").get<std::int32_t>();
-  cell.order = json.at("order").get<std::int32_t>();
-  cell.fold = json.at("fold").get<std::int32_t>();
-  cell.axis_origin = point_of(json.at("axis").at("origin"));
-  cell.axis_direction = point_of(json.at("axis").at("direction"));
-  for (const Json& p : json.at("nodes")) cell.points.push_back(point_of(p));
+  MeshData& mesh = cell.mesh;
+  mesh.dimension = json.at("dimension").get<std::int32_t>();
+  mesh.order = json.at("order").get<std::int32_t>();
+  mesh.fold = json.at("fold").get<std::int32_t>();
+  mesh.axis_origin = point_of(json.at("axis").at("origin"));
+  mesh.axis_direction = point_of(json.at("axis").at("direction"));
+  for (const Json& p : json.at("nodes")) mesh.points.push_back(point_of(p));
   for (const Json& e : json.at("elements")) {
-    for (const Json& n : e) cell.elements.push_back(n.get<std::int32_t>());
+    for (const Json& n : e) mesh.elements.push_back(n.get<std::int32_t>());
   }
-  cell.regions = json.at("regions").get<std::vector<std::int32_t>>();
-  cell.node_markers = json.at("markers").get<std::vector<std::int32_t>>();
+  mesh.regions = json.at("regions").get<std::vector<std::int32_t>>();
+  mesh.markers = json.at("markers").get<std::vector<std::int32_t>>();
   const Json names = json.value("marker_names", Json::object());
   for (const auto& [marker, name] : names.items()) {
     cell.marker_names.push_back({std::stoi(marker), on_one_line(name.get<std::string>())});
@@ -302,16 +306,16 @@ Result<LooseCell> loose_from_json(const Json& json) {
     for (const Json& n : facet.at("nodes")) cell.boundary.push_back(n.get<std::int32_t>());
     cell.boundary_markers.push_back(facet.at("marker").get<std::int32_t>());
   }
-  cell.lower_to_higher.assign(cell.points.size(), -1);
+  mesh.lower_to_higher.assign(mesh.points.size(), -1);
   const auto lower = json.at("lower").get<std::vector<std::int32_t>>();
   const auto higher = json.at("higher").get<std::vector<std::int32_t>>();
   if (lower.size() != higher.size()) return misfit("lower and higher differ in number");
   for (std::size_t i = 0; i < lower.size(); ++i) {
-    if (lower[i] < 0 || at(lower[i]) >= cell.points.size())
+    if (lower[i] < 0 || at(lower[i]) >= mesh.points.size())
       return misfit("a pair's node does not exist");
-    cell.lower_to_higher[at(lower[i])] = higher[i];
+    mesh.lower_to_higher[at(lower[i])] = higher[i];
   }
-  if (cell.node_markers.size() != cell.points.size())
+  if (mesh.markers.size() != mesh.points.size())
     return misfit("markers and nodes differ in number");
   return cell;
 }
@@ -328,42 +332,18 @@ Result<LooseCell> read_json(std::string_view bytes) {
 }
 
 Result<LooseCell> read_vtu_cell(std::string_view bytes) {
-  const Result<MeshData> data = read_vtu(bytes);
+  Result<MeshData> data = read_vtu(bytes);
   if (!data) return error_of(data);
   LooseCell cell;
-  cell.dimension = data->dimension;
-  cell.order = data->order;
-  cell.fold = data->fold;
-  cell.shape_tolerance_rel = static_cast<float>(data->shape_tolerance_rel);
-  cell.axis_origin = data->axis_origin;
-  cell.axis_direction = data->axis_direction;
-  cell.points = data->points;
-  cell.elements = data->elements;
-  cell.regions = data->regions;
-  cell.lower_to_higher = data->lower_to_higher;
-  cell.node_markers = data->markers;
+  cell.mesh = std::move(*data);
   return cell;
 }
 
 // What a checker of files says of it: a cell whose copies do not fit would become a wrong full mesh.
-Result<void> check_loose(const LooseCell& loose, const SymmetryCellMesh& cell) {
-  MeshData data;
-  data.dimension = loose.dimension;
-  data.order = loose.order;
-  data.fold = loose.fold;
-  data.shape_tolerance_rel = loose.shape_tolerance_rel;
-  data.axis_origin = loose.axis_origin;
-  data.axis_direction = loose.axis_direction;
-  data.points = loose.points;
-  data.curved = true;  // it may have been asked for
-  data.nodes_per_element = cell.nodes_per_element;
-  data.elements = loose.elements;
-  data.regions = loose.regions;
-  data.markers = cell.node_markers;
-  data.lower_to_higher = loose.lower_to_higher;
+Result<void> check_loose(const MeshData& mesh) {
   VerifyOptions options;
   options.most_restored_nodes = 0;  // the cell alone
-  for (const Check& check : verify_mesh(data, nullptr, nullptr, options).checks) {
+  for (const Check& check : verify_mesh(mesh, nullptr, nullptr, options).checks) {
     if (check.status == Check::Status::kFail) return misfit(check.name + ": " + check.detail);
   }
   return {};
@@ -389,12 +369,14 @@ Result<SymmetryCellMesh> read_cell(std::string_view bytes) {
     return fail(ErrorCode::kSyntax,
                 "this is no mesh that is read: give JSON or VTU of a cell, or a job's cell");
   }
-  const Result<LooseCell> loose = json ? read_json(bytes) : read_vtu_cell(bytes);
+  Result<LooseCell> loose = json ? read_json(bytes) : read_vtu_cell(bytes);
   if (!loose) return error_of(loose);
   auto cell = cell_of(*loose);
-  if (cell) {
-    SYMCELL_TRY(check_loose(*loose, *cell));
-  }
+  if (!cell) return cell;
+  MeshData& mesh = loose->mesh;
+  mesh.nodes_per_element = cell->nodes_per_element;  // which JSON does not tell
+  mesh.curved = true;                                // it may have been asked for
+  SYMCELL_TRY(check_loose(mesh));
   return cell;
 }
 

@@ -7,22 +7,13 @@
 
 #include "core/base/error.hpp"
 #include "core/cell/symmetry_cell_mesh.hpp"
+#include "core/verify/mesh_data.hpp"
 
 namespace symcell {
 
 // What a file holds of a cell, in model coordinates.
 struct LooseCell {
-  std::int32_t dimension = 2;
-  std::int32_t order = 1;
-  std::int32_t fold = 1;
-  float shape_tolerance_rel = 0;
-  Point3 axis_origin;
-  Point3 axis_direction{0, 0, 1};
-  std::vector<Point3> points;
-  std::vector<std::int32_t> elements;  // nodes, as in SymmetryCellMesh
-  std::vector<std::int32_t> regions;
-  std::vector<std::int32_t> lower_to_higher;  // per node
-  std::vector<std::int32_t> node_markers;     // per node; empty: all 0
+  MeshData mesh;
   std::vector<MarkerName> marker_names;
   // Facets as nodes, corners first; without them (VTU) they are found: those of one element that are on
   // no bound, with the marker of their nodes where these have one alone.

@@ -593,7 +593,7 @@ constexpr auto kRows = std::to_array<OptionRow>({
       "longest edges on a group by name or marker, at a vertex (from 0), of solids in a region and "
       "at a "
       "point, in model units; at all copies of them",
-      kAll},
+      kAll, true},
      set_sizes,
      get_sizes},
     {{"gradation", "G", "",
@@ -614,7 +614,7 @@ constexpr auto kRows = std::to_array<OptionRow>({
        return o.target_elements > 0 ? Json(o.target_elements) : Json(nullptr);
      }},
     {{"divisions", "marker:M=N", "",
-      "planar: segments of a marker have N equal parts and no other points", kPlanar},
+      "planar: segments of a marker have N equal parts and no other points", kPlanar, true},
      set_divisions,
      get_divisions},
     flag_row<&MeshOptions::keep_boundary>(
@@ -663,7 +663,7 @@ constexpr auto kRows = std::to_array<OptionRow>({
         {"strict", "", "", "any warning is an error, and nothing is written", kAll}),
     {{"fail_on", "FIGURE<X,...", "",
       "figures of the statistics that are an error, as cell.min_dihedral_deg<20,cell.elements>1e6",
-      kAll},
+      kAll, true},
      set_fail_on,
      get_fail_on},
 });

@@ -25,6 +25,7 @@ struct OptionInfo {
   std::string_view standard;  // the default, in words; empty: unset
   std::string_view help;      // one line, with the unit and the range
   OptionScope scope;          // models of which kind take it
+  bool is_list = false;       // of values with commas between
 };
 
 [[nodiscard]] std::span<const OptionInfo> mesh_option_table();

@@ -220,8 +220,10 @@ std::optional<Warning> exempt_elements_warning(const std::vector<ExemptCount>& e
                                                std::uint64_t elements) {
   std::uint64_t count = 0;
   std::string reasons;
+  bool by_curves = true;
   for (const ExemptCount& e : exempt) {
     count += e.elements;
+    by_curves = by_curves && (e.reason == "curved_boundary" || e.elements == 0);
     reasons += (reasons.empty() ? "" : ", ") + e.reason + " " + std::to_string(e.elements);
   }
   if (!(static_cast<double>(count) > kFewExempt * static_cast<double>(elements))) {
@@ -230,8 +232,10 @@ std::optional<Warning> exempt_elements_warning(const std::vector<ExemptCount>& e
   return Warning{WarningCode::kExemptElements,
                  std::to_string(count) + " of the cell's " + std::to_string(elements) +
                      " elements are exempt from the quality bound (" + reasons + ")",
-                 "blunt the model's sharp corners, relax the bound, or take a smaller fold where "
-                 "the fold angle is the reason"};
+                 by_curves ? "give a shorter max_edge, which follows curved faces more closely, or "
+                             "curved=false for chords"
+                           : "blunt the model's sharp corners, relax the bound, or take a smaller "
+                             "fold where the fold angle is the reason"};
 }
 
 Warning elements_missed_warning(std::uint64_t wanted, std::uint64_t found) {

@@ -2,20 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <string_view>
 
 #include "api/schema/options.hpp"
 
 namespace symcell::cli {
-namespace {
-
-// Options that are lists may be given several times: --size bore=0.5 --size rim=1.
-bool is_list(std::string_view name) {
-  return name == "sizes" || name == "divisions" || name == "fail_on";
-}
-
-}  // namespace
-
 void OptionFlags::add_to(CLI::App& command) {
   for (const OptionInfo& info : mesh_option_table()) {
     const std::string name(info.name);
@@ -32,7 +22,8 @@ void OptionFlags::add_to(CLI::App& command) {
       option = command.add_option_function<std::string>(
           flag, [this, name](const std::string& value) { given_.emplace_back(name, value); }, help);
       option->type_name(std::string(info.metavar));
-      if (is_list(name)) {
+      // --size bore=0.5 --size rim=1
+      if (info.is_list) {
         option->delimiter(',')->multi_option_policy(CLI::MultiOptionPolicy::Join);
       } else {
         option->multi_option_policy(CLI::MultiOptionPolicy::Throw);

@@ -256,6 +256,13 @@ TEST(Warnings, OfExemptElementsGiveTheReasons) {
   EXPECT_NE(outcome->statistics.warnings.front().text.find("small_input_angle"), std::string::npos);
   EXPECT_FALSE(exempt_elements_warning({{"small_input_angle", 5}}, 1000));
   EXPECT_TRUE(exempt_elements_warning({{"small_input_angle", 5}, {"x", 1}}, 1000));
+  // Each is told what helps it.
+  const auto curved = exempt_elements_warning({{"curved_boundary", 9}}, 1000);
+  ASSERT_TRUE(curved);
+  EXPECT_NE(curved->mend.find("curved=false"), std::string::npos);
+  const auto both = exempt_elements_warning({{"curved_boundary", 5}, {"min_edge", 5}}, 1000);
+  ASSERT_TRUE(both);
+  EXPECT_NE(both->mend.find("relax the bound"), std::string::npos);
 }
 
 TEST(Warnings, AreErrorsWhereStrict) {
