@@ -145,6 +145,12 @@ class Checker {
   }
 
   void see_subsegments(TetId t) {
+    // Most have no two corners that end subsegments.
+    const Tet& tet = mesh_.tet(t);
+    const auto ends = [&](VertexId v) {
+      return seen_[static_cast<std::size_t>(v)].segment_ends > 0;
+    };
+    if (std::count_if(tet.v, tet.v + 4, ends) < 2) return;
     for (const auto& e : kEdgeCorners) {
       const OrbitVertex a = mesh_.corner(t, e[0]), b = mesh_.corner(t, e[1]);
       const std::int32_t segment = mesh_.segment_of(a, b);
