@@ -74,7 +74,7 @@ class FrdReader {
     return std::string(text.substr(begin, end - begin));
   }
 
-  Failure complain(ErrorCode code, const std::string& what) const {
+  [[nodiscard]] Failure complain(ErrorCode code, const std::string& what) const {
     return fail(code, "line " + std::to_string(number_) + ": " + what);
   }
 
@@ -270,6 +270,7 @@ Result<void> write_full_result(const SymmetryCellMesh& cell,
   }
   const Waves waves(cell, result);
   std::vector<Waves::Shift> shifts;  // by how many sectors
+  shifts.reserve(at(cell.fold));
   for (std::int32_t k = 0; k < cell.fold; ++k) shifts.push_back(waves.shift(k, signed_diameter));
   const auto moved = [&](OrbitVertex v) {
     const std::size_t own = at(node[at(v.orbit)]);

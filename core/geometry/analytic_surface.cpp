@@ -35,6 +35,14 @@ Point3 away_from(Point3 axis, Point3 d) {
   return rest > kLeastLeft ? (1 / rest) * left : any_normal_to(axis);
 }
 
+// Of length 1, from the ring in a torus's tube that lies in direction `out` to a place at d from the torus's centre; on
+// the ring `out`, which is as good as any.
+Point3 away_from_ring(const AnalyticSurface& torus, Point3 out, Point3 d) {
+  const double r = dot(d, out) - torus.radius, z = dot(d, torus.direction);
+  const double size = std::hypot(r, z);
+  return size > 0 ? (r / size) * out + (z / size) * torus.direction : out;
+}
+
 }  // namespace
 
 Point3 project_onto(const AnalyticSurface& surface, Point3 p) {
@@ -47,8 +55,8 @@ Point3 project_onto(const AnalyticSurface& surface, Point3 p) {
     case FaceKind::kSphere: return surface.origin + surface.radius * unit(d, axis);
     case FaceKind::kTorus: {
       const Point3 out = away_from(axis, d);
-      const Point3 ring = surface.origin + surface.radius * out;
-      return ring + surface.tube_radius * unit(p - ring, out);
+      return surface.origin + surface.radius * out +
+             surface.tube_radius * away_from_ring(surface, out, d);
     }
     case FaceKind::kCone: {
       const Point3 ray =
@@ -67,10 +75,7 @@ Point3 normal_at(const AnalyticSurface& surface, Point3 p) {
   switch (surface.kind) {
     case FaceKind::kPlane: return axis;
     case FaceKind::kSphere: return unit(d, axis);
-    case FaceKind::kTorus: {
-      const Point3 out = away_from(axis, d);
-      return unit(p - (surface.origin + surface.radius * out), out);
-    }
+    case FaceKind::kTorus: return away_from_ring(surface, away_from(axis, d), d);
     case FaceKind::kCone:
       return std::cos(surface.half_angle) * away_from(axis, d) -
              std::sin(surface.half_angle) * axis;

@@ -427,6 +427,7 @@ TEST(FaceGroups, AConeIsCurvedUpToItsApex) {
   MeshOptions options = with_fold(8);
   options.order = 2;
   options.curved = true;
+  options.max_edge = 1;
   ExecutionContext context;
   const auto outcome = mesh_model(cone, options, context);
   ASSERT_TRUE(outcome) << outcome.error().message;
