@@ -69,7 +69,7 @@ class Rebuilder {
     return in_.order == 1 ? facet_corners() : (in_.dimension == 2 ? 3 : 6);
   }
 
-  Result<void> check_sizes() const {
+  [[nodiscard]] Result<void> check_sizes() const {
     if (in_.fold < 1 || in_.order < 1 || in_.order > 2) return misfit("fold or order");
     if (in_.fold > kMaxFold) {
       return misfit("its fold is above " + std::to_string(kMaxFold));
@@ -102,7 +102,7 @@ class Rebuilder {
     return {};
   }
 
-  Result<void> check_places() const {
+  [[nodiscard]] Result<void> check_places() const {
     const auto sound = [](Point3 p) {
       return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kMostCoordinate;
     };

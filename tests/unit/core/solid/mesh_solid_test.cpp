@@ -11,7 +11,6 @@
 #include <map>
 #include <memory>
 #include <numbers>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -477,10 +476,10 @@ class RefusesMoves final : public SectorSource {
       std::int32_t fold, ExecutionContext& context) const override {
     return source_.with_fold(fold, context);
   }
-  [[nodiscard]] Result<void> check_boundary(std::span<const Point3> points,
+  [[nodiscard]] Result<void> check_boundary(const SymmetryCellMesh& cell,
                                             ExecutionContext& context) const override {
     if (moved_) return fail(ErrorCode::kInternal, "too far");
-    return source_.check_boundary(points, context);
+    return source_.check_boundary(cell, context);
   }
   [[nodiscard]] std::unique_ptr<CurvedBoundary> curved_boundary(
       const SymmetryCellMesh& cell, const MeshOptions& options) const override {
