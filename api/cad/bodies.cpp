@@ -98,10 +98,10 @@ class BodyMaker {
   void sew() {
     const double size = diagonal_of(shapes_.shape);
     BRepBuilderAPI_Sewing sewing(std::max(kSewRel * size, 1e-9));
-    TopExp_Explorer face(shapes_.shape, TopAbs_FACE);
-    if (!face.More())
+    TopExp_Explorer faces(shapes_.shape, TopAbs_FACE);
+    if (!faces.More())
       throw Refusal{Status::kNoShape, "it holds no solid and no surface, only curves"};
-    for (; face.More(); face.Next()) sewing.Add(face.Current());
+    for (; faces.More(); faces.Next()) sewing.Add(faces.Current());
     sewing.Perform();
     follow_labels(shapes_.shape, [&](const TopoDS_Shape& face, const auto& is_now) {
       is_now(sewing.Modified(face));

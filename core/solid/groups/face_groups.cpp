@@ -380,7 +380,7 @@ class Grouper {
       if (!file_name_.empty() && !file_name_[i].empty()) {
         const std::string& own = file_name_[i];
         const bool alone = uses[own] == 1;
-        name = alone ? own : own + "_" + name;
+        name = alone ? own : std::string(own).append("_").append(name);
         counted = !alone && counted;
       }
       std::string full;
