@@ -239,7 +239,7 @@ Result<void> open_vtu(std::string_view bytes, OpenVtu& file) {
   Result<VtuArrays> arrays = VtuArrays::open(root, appended);
   if (!arrays) return error_of(arrays);
   file.grid = grid;
-  file.arrays = std::move(*arrays);
+  file.arrays = *arrays;
   return {};
 }
 

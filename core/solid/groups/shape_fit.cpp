@@ -200,6 +200,7 @@ class Fitter {
                                   Point2 centre,
                                   double radius) const {
     std::vector<double> angles;
+    angles.reserve(local.size());
     for (const Point3& p : local) angles.push_back(std::atan2(p.y - centre.y, p.x - centre.x));
     std::sort(angles.begin(), angles.end());
     Round round;
