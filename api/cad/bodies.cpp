@@ -81,33 +81,33 @@ class BodyMaker {
     }
   }
 
-  // What a face was turned into is labelled as it was.
+  // What a face of `shape` was turned into is labelled as it was. Faces are asked in the order of the shape: of two
+  // that became one the first one's label stays. `turned` calls its last argument with what it is now.
   template <class Turned>
-  void follow_labels(const Turned& turned) {
-    FaceLabels next = labels_;
-    for (FaceLabels::Iterator i(labels_); i.More(); i.Next()) turned(i.Key(), i.Value(), next);
-    labels_ = next;
+  void follow_labels(const TopoDS_Shape& shape, const Turned& turned) {
+    for (TopExp_Explorer e(shape, TopAbs_FACE); e.More(); e.Next()) {
+      const FaceLabel* found = labels_.Seek(e.Current());
+      if (found == nullptr) continue;
+      const FaceLabel label = *found;  // which stays where the map grows
+      turned(e.Current(), [&](const TopoDS_Shape& now) {
+        if (!now.IsNull() && !labels_.IsBound(now)) labels_.Bind(now, label);
+      });
+    }
   }
 
   void sew() {
     const double size = diagonal_of(shapes_.shape);
     BRepBuilderAPI_Sewing sewing(std::max(kSewRel * size, 1e-9));
-    std::uint32_t faces = 0;
-    for (TopExp_Explorer e(shapes_.shape, TopAbs_FACE); e.More(); e.Next()) {
-      sewing.Add(e.Current());
-      ++faces;
-    }
-    if (faces == 0)
+    TopExp_Explorer faces(shapes_.shape, TopAbs_FACE);
+    if (!faces.More())
       throw Refusal{Status::kNoShape, "it holds no solid and no surface, only curves"};
+    for (; faces.More(); faces.Next()) sewing.Add(faces.Current());
     sewing.Perform();
-    result_.sewn = faces;
-    result_.open_edges = static_cast<std::uint32_t>(sewing.NbFreeEdges());
-    follow_labels([&](const TopoDS_Shape& face, const FaceLabel& label, FaceLabels& next) {
-      const TopoDS_Shape& now = sewing.Modified(face);
-      if (!now.IsNull()) next.Bind(now, label);
+    follow_labels(shapes_.shape, [&](const TopoDS_Shape& face, const auto& is_now) {
+      is_now(sewing.Modified(face));
     });
     open_ = sewing.SewedShape();
-    if (result_.open_edges > 0) return;
+    if (sewing.NbFreeEdges() > 0) return;
     for (TopExp_Explorer e(open_, TopAbs_SHELL); e.More(); e.Next()) {
       TopoDS_Solid solid;
       BRep_Builder().MakeSolid(solid);
@@ -125,9 +125,9 @@ class BodyMaker {
       fix->Perform();
       const TopoDS_Shape fixed = fix->Shape();
       if (fixed.IsNull() || !TopExp_Explorer(fixed, TopAbs_FACE).More()) continue;
-      follow_labels([&](const TopoDS_Shape& face, const FaceLabel& label, FaceLabels& next) {
+      follow_labels(solid, [&](const TopoDS_Shape& face, const auto& is_now) {
         const TopoDS_Shape now = fix->Context()->Apply(face);
-        for (TopExp_Explorer e(now, TopAbs_FACE); e.More(); e.Next()) next.Bind(e.Current(), label);
+        for (TopExp_Explorer e(now, TopAbs_FACE); e.More(); e.Next()) is_now(e.Current());
       });
       solid = fixed;
       ++result_.mended;
@@ -144,11 +144,13 @@ class BodyMaker {
     fused.Build();
     // What cannot be fused is united as overlapping bodies of any surface are.
     if (fused.HasErrors() || fused.Shape().IsNull()) return;
-    follow_labels([&](const TopoDS_Shape& face, const FaceLabel& label, FaceLabels& next) {
-      for (TopTools_ListOfShape::Iterator i(fused.Modified(face)); i.More(); i.Next()) {
-        if (!next.IsBound(i.Value())) next.Bind(i.Value(), label);
-      }
-    });
+    for (const TopoDS_Shape& solid : solids_) {
+      follow_labels(solid, [&](const TopoDS_Shape& face, const auto& is_now) {
+        for (TopTools_ListOfShape::Iterator i(fused.Modified(face)); i.More(); i.Next()) {
+          is_now(i.Value());
+        }
+      });
+    }
     std::vector<TopoDS_Shape> parts;
     for (TopExp_Explorer e(fused.Shape(), TopAbs_SOLID); e.More(); e.Next()) {
       parts.push_back(e.Current());

@@ -12,7 +12,7 @@
 namespace symcell::cad {
 
 // A module of another version is not loaded.
-inline constexpr std::uint32_t kModuleVersion = 1;
+inline constexpr std::uint32_t kModuleVersion = 2;
 inline constexpr const char* kModuleFile = "symcell_cad.so";
 inline constexpr const char* kReadFunction = "symcell_read_cad";
 
@@ -34,8 +34,8 @@ using Write = bool (*)(void* sink, const void* bytes, std::size_t size);
 // The answer is a status, then, unless that is kRead, a text for the user, and else
 //   text    the file's unit of length; coordinates are in millimetres whatever it is
 //   texts   names of the solids, which may be empty
-//   u32 x 6 solids of the file; those mended; faces sewn; edges left open; shapes left out, being no part
-//           of a solid; faces between two solids, which are left out
+//   u32 x 3 solids mended; shapes left out, being no part of a solid; faces between two solids, which are
+//           left out
 //   u32     faces, each: u32 kind as in FaceKind (plane, cylinder, cone, sphere, torus, other),
 //           double x 12 origin, direction, apex, radius, tube radius, half angle (as in AnalyticSurface)
 //           text name, i32 colour 0xRRGGBB or -1. Neighbours on one surface with one name and colour

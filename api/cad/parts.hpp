@@ -44,7 +44,7 @@ struct Bodies {
   std::vector<TopoDS_Shape> faces;  // that bound the material, which is on the inner side of each
   FaceLabels labels;                // of these faces, in their places
   std::vector<std::string> solid_names;
-  std::uint32_t mended = 0, sewn = 0, open_edges = 0, left_out = 0, inner_faces = 0;
+  std::uint32_t mended = 0, left_out = 0, inner_faces = 0;
 };
 
 // The solids of a file: mended where they are invalid, sewn from faces where there are none; those

@@ -186,9 +186,7 @@ class Tessellation {
     answer.put(Status::kRead);
     answer.put_text(unit);
     answer.put_texts(bodies_.solid_names);
-    answer.put(static_cast<std::uint32_t>(bodies_.solid_names.size()));
-    for (const std::uint32_t n : {bodies_.mended, bodies_.sewn, bodies_.open_edges,
-                                  bodies_.left_out, bodies_.inner_faces}) {
+    for (const std::uint32_t n : {bodies_.mended, bodies_.left_out, bodies_.inner_faces}) {
       answer.put(n);
     }
     answer.put(static_cast<std::uint32_t>(joined_.size()));

@@ -101,7 +101,7 @@ class AnswerReader {
  private:
   bool get_notes(TriangleSurface& surface) {
     CadNotes notes;
-    std::uint32_t solids = 0, same = 0;
+    std::uint32_t solids = 0;
     if (!get_text(notes.unit) || !get(solids) || solids > bytes_.size()) return false;
     notes.solids.resize(solids);
     for (std::string& name : notes.solids) {
@@ -109,12 +109,9 @@ class AnswerReader {
       name = printable(name, kLongestName);
     }
     notes.unit = printable(notes.unit, kLongestName);
-    if (!get(same) || !get(notes.mended) || !get(notes.sewn) || !get(notes.open_edges) ||
-        !get(notes.left_out) || !get(notes.inner_faces)) {
-      return false;
-    }
+    if (!get(notes.mended) || !get(notes.left_out) || !get(notes.inner_faces)) return false;
     surface.cad_notes = std::move(notes);
-    return same == solids;
+    return true;
   }
 
   bool get_faces(TriangleSurface& surface) {

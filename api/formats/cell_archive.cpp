@@ -20,6 +20,7 @@
 #include <string>
 
 #include "api/formats/byte_writer.hpp"
+#include "core/model/mesh_options.hpp"
 
 namespace symcell {
 namespace {
@@ -131,7 +132,7 @@ bool all_below(const std::vector<std::int32_t>& indices,
 // What readers of the mesh rely on; empty if it holds, else what does not.
 std::string_view broken_rule(const SymmetryCellMesh& m) {
   const bool known_kind = (m.dimension == 2 || m.dimension == 3) && (m.order == 1 || m.order == 2);
-  if (!known_kind || m.fold < 1) return "dimension, order or fold";
+  if (!known_kind || m.fold < 1 || m.fold > kMaxFold) return "dimension, order or fold";
   const std::int32_t element = m.dimension == 2 ? (m.order == 1 ? 3 : 6) : (m.order == 1 ? 4 : 10);
   const std::int32_t facet = m.dimension == 2 ? (m.order == 1 ? 2 : 3) : (m.order == 1 ? 3 : 6);
   if (m.nodes_per_element != element || m.nodes_per_facet != facet) return "nodes an element";

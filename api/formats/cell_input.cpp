@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <cstdint>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,8 @@
 #include "api/formats/gzip.hpp"
 #include "api/formats/vtu_reader.hpp"
 #include "core/geometry/axis_frame.hpp"
+#include "core/model/mesh_options.hpp"
+#include "core/verify/support.hpp"
 #include "core/verify/verify_mesh.hpp"
 
 namespace symcell {
@@ -31,19 +34,6 @@ std::size_t at(std::int32_t i) {
 
 Failure misfit(const std::string& what) {
   return fail(ErrorCode::kSyntax, "this is no symmetry cell: " + what);
-}
-
-// Facets of an element by its corners, outwards; and of order 2 the mid-side nodes between them.
-constexpr std::array<std::array<std::size_t, 3>, 4> kTetFaces = {
-    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-constexpr std::array<std::array<std::size_t, 2>, 3> kTriangleSides = {{{0, 1}, {1, 2}, {2, 0}}};
-// Of two corners the place of the node between them, in VTK's order.
-std::size_t mid_of(std::int32_t dimension, std::size_t a, std::size_t b) {
-  if (a > b) std::swap(a, b);
-  if (dimension == 2) return 3 + (a == 0 ? (b == 1 ? 0 : 2) : 1);
-  constexpr std::array<std::array<std::size_t, 4>, 4> kMid = {
-      {{0, 4, 6, 7}, {4, 0, 5, 8}, {6, 5, 0, 9}, {7, 8, 9, 0}}};
-  return kMid[a][b];
 }
 
 class Rebuilder {
@@ -70,9 +60,6 @@ class Rebuilder {
   }
 
  private:
-  // The corners of a facet, ascending, by which it is known.
-  using Corners = std::vector<std::int32_t>;
-
   [[nodiscard]] std::size_t corners() const { return in_.dimension == 2 ? 3 : 4; }
   [[nodiscard]] std::size_t nodes_per_element() const {
     return in_.order == 1 ? corners() : (in_.dimension == 2 ? 6 : 10);
@@ -84,7 +71,13 @@ class Rebuilder {
 
   [[nodiscard]] Result<void> check_sizes() const {
     if (in_.fold < 1 || in_.order < 1 || in_.order > 2) return misfit("fold or order");
+    if (in_.fold > kMaxFold) {
+      return misfit("its fold is above " + std::to_string(kMaxFold));
+    }
     if (in_.dimension != 2 && in_.dimension != 3) return misfit("dimension is neither 2 nor 3");
+    if (static_cast<std::size_t>(in_.nodes_per_element) != nodes_per_element()) {
+      return misfit("elements have another number of nodes than dimension and order say");
+    }
     SYMCELL_TRY(check_places());
     if (in_.elements.size() != in_.regions.size() * nodes_per_element()) {
       return misfit("elements and regions differ in number");
@@ -163,79 +156,73 @@ class Rebuilder {
     return {};
   }
 
-  // Facet f of element e, corners first.
-  [[nodiscard]] std::vector<std::int32_t> facet_nodes(std::size_t e, std::size_t f) const {
-    const std::int32_t* own = in_.elements.data() + e * nodes_per_element();
-    std::vector<std::size_t> local;
-    if (in_.dimension == 2) {
-      local.assign(kTriangleSides[f].begin(), kTriangleSides[f].end());
-    } else {
-      local.assign(kTetFaces[f].begin(), kTetFaces[f].end());
-    }
-    std::vector<std::int32_t> nodes;
-    nodes.reserve(nodes_per_facet());
-    for (const std::size_t c : local) nodes.push_back(own[c]);
+  // Corners outwards as its element sees them, then the nodes between.
+  [[nodiscard]] std::vector<std::int32_t> facet_nodes(const internal::HalfFacet& facet) const {
+    std::vector<std::int32_t> nodes(facet.nodes.begin(), facet.nodes.end());
+    nodes.resize(facet_corners());
+    if (!facet.even) std::swap(nodes[nodes.size() - 2], nodes.back());
     if (in_.order == 1) return nodes;
-    for (std::size_t i = 0; i < (local.size() == 2 ? 1 : local.size()); ++i) {
-      nodes.push_back(own[mid_of(in_.dimension, local[i], local[(i + 1) % local.size()])]);
+    const std::int32_t* own = in_.elements.data() + at(facet.element) * nodes_per_element();
+    const auto sides = internal::edge_corners(in_.dimension);
+    for (std::size_t i = 0; nodes.size() < nodes_per_facet(); ++i) {
+      const std::int32_t a = nodes[i], b = nodes[(i + 1) % facet_corners()];
+      const auto side = std::ranges::find_if(sides, [&](const auto& s) {
+        return (own[s[0]] == a && own[s[1]] == b) || (own[s[0]] == b && own[s[1]] == a);
+      });
+      nodes.push_back(own[corners() + static_cast<std::size_t>(side - sides.begin())]);
     }
     return nodes;
   }
 
-  [[nodiscard]] Corners key_of(const std::vector<std::int32_t>& nodes) const {
-    Corners key(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(facet_corners()));
-    std::ranges::sort(key);
-    return key;
+  // The group of a facet by its nodes, corners first; as many as there are groups: none.
+  [[nodiscard]] std::size_t group_of(const internal::FacetedMesh& faceted,
+                                     std::span<const std::int32_t> nodes) const {
+    std::array<std::int32_t, 3> key{nodes[0], nodes[1], in_.dimension == 2 ? -1 : nodes[2]};
+    internal::sort_facet(key, in_.dimension);
+    return faceted.find(key);
+  }
+
+  // Nothing where a node has no image.
+  [[nodiscard]] std::vector<std::int32_t> image_of(const std::vector<std::int32_t>& nodes) const {
+    std::vector<std::int32_t> image;
+    for (const std::int32_t n : nodes) {
+      const std::int32_t to = in_.lower_to_higher[at(n)];
+      if (to < 0) return {};
+      image.push_back(to);
+    }
+    return image;
   }
 
   void find_facets() {
-    std::map<Corners, std::vector<std::int32_t>>
-        outer;  // of one element: its nodes as that has them
-    for (std::size_t e = 0; e < in_.regions.size(); ++e) {
-      for (std::size_t f = 0; f < corners(); ++f) {
-        std::vector<std::int32_t> nodes = facet_nodes(e, f);
-        const Corners key = key_of(nodes);
-        const auto [place, fresh] = outer.try_emplace(key, std::move(nodes));
-        if (!fresh) outer.erase(place);
-      }
-    }
-    std::map<Corners, char> higher;
-    const auto image_of = [&](const std::vector<std::int32_t>& nodes) {
-      std::vector<std::int32_t> image;
-      for (const std::int32_t n : nodes) {
-        const std::int32_t to = in_.lower_to_higher[at(n)];
-        if (to < 0) return std::vector<std::int32_t>();
-        image.push_back(to);
-      }
-      return image;
-    };
-    std::map<Corners, char> lower;
-    for (const auto& [key, nodes] : outer) {
+    const internal::FacetedMesh faceted(in_);
+    const std::size_t groups = faceted.group_count();
+    std::vector<char> lower(groups, 0), higher(groups, 0);
+    for (std::size_t g = 0; g < groups && in_.fold > 1; ++g) {
+      if (faceted.sides(g) != 1) continue;
+      const std::vector<std::int32_t> nodes = facet_nodes(faceted.first(g));
       const std::vector<std::int32_t> image = image_of(nodes);
-      if (image.empty() || in_.fold == 1) continue;
-      const Corners other = key_of(image);
-      if (other == key || !outer.contains(other)) continue;
+      if (image.empty()) continue;
+      const std::size_t other = group_of(faceted, image);
+      if (other == g || other == groups || faceted.sides(other) != 1) continue;
       out_.lower_facets.insert(out_.lower_facets.end(), nodes.begin(), nodes.end());
       out_.higher_facets.insert(out_.higher_facets.end(), image.begin(), image.end());
-      higher[other] = 1;
-      lower[key] = 1;
+      lower[g] = higher[other] = 1;
     }
     if (loose_.has_boundary) {
       out_.boundary = loose_.boundary;
       out_.boundary_markers = loose_.boundary_markers;
     } else {
-      for (const auto& [key, nodes] : outer) {
-        if (higher.contains(key) || lower.contains(key)) continue;
+      for (std::size_t g = 0; g < groups; ++g) {
+        if (faceted.sides(g) != 1 || lower[g] != 0 || higher[g] != 0) continue;
+        const std::vector<std::int32_t> nodes = facet_nodes(faceted.first(g));
         out_.boundary.insert(out_.boundary.end(), nodes.begin(), nodes.end());
         out_.boundary_markers.push_back(common_marker(nodes));
       }
     }
     const std::size_t per = nodes_per_facet();
     for (std::size_t b = 0; b < out_.boundary_markers.size(); ++b) {
-      const std::vector<std::int32_t> nodes(
-          out_.boundary.begin() + static_cast<std::ptrdiff_t>(b * per),
-          out_.boundary.begin() + static_cast<std::ptrdiff_t>((b + 1) * per));
-      out_.boundary_is_higher_image.push_back(higher.contains(key_of(nodes)) ? 1 : 0);
+      const std::size_t g = group_of(faceted, std::span(out_.boundary).subspan(b * per, per));
+      out_.boundary_is_higher_image.push_back(g < groups && higher[g] != 0 ? 1 : 0);
     }
   }
 
@@ -256,6 +243,22 @@ class Rebuilder {
   const MeshData& in_;
   SymmetryCellMesh out_;
 };
+
+// An integer of 32 bits: others would come out as another one.  Throws where it is none.
+std::int32_t int_of(const Json& json) {
+  const bool whole = json.is_number_unsigned()
+                         ? json.get<std::uint64_t>() <= INT32_MAX
+                         : json.is_number_integer() && json.get<std::int64_t>() >= INT32_MIN;
+  if (!whole) throw std::out_of_range("no integer of 32 bits");
+  return json.get<std::int32_t>();
+}
+
+std::vector<std::int32_t> ints_of(const Json& json) {
+  std::vector<std::int32_t> values;
+  values.reserve(json.size());
+  for (const Json& value : json) values.push_back(int_of(value));
+  return values;
+}
 
 Point3 point_of(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(),
@@ -283,33 +286,38 @@ Result<LooseCell> loose_from_json(const Json& json) {
         "packed JSON is for programs that draw; give JSON that was written without --packed");
   }
   for (const char* name : {"dimension", "order", "fold"}) {
-    if (!json.at(name).is_number_integer()) return misfit(std::string(name) + " is no integer");
+    const Json& value = json.at(name);
+    if (!value.is_number_integer() || value.get<double>() > INT32_MAX) {
+      return misfit(std::string(name) + " is no integer, or far too large");
+    }
   }
   LooseCell cell;
   MeshData& mesh = cell.mesh;
-  mesh.dimension = json.at("dimension").get<std::int32_t>();
-  mesh.order = json.at("order").get<std::int32_t>();
-  mesh.fold = json.at("fold").get<std::int32_t>();
+  mesh.dimension = int_of(json.at("dimension"));
+  mesh.order = int_of(json.at("order"));
+  mesh.fold = int_of(json.at("fold"));
+  mesh.nodes_per_element = mesh.dimension + 1;
+  if (mesh.order == 2) mesh.nodes_per_element = mesh.dimension == 2 ? 6 : 10;
   mesh.axis_origin = point_of(json.at("axis").at("origin"));
   mesh.axis_direction = point_of(json.at("axis").at("direction"));
   for (const Json& p : json.at("nodes")) mesh.points.push_back(point_of(p));
   for (const Json& e : json.at("elements")) {
-    for (const Json& n : e) mesh.elements.push_back(n.get<std::int32_t>());
+    for (const Json& n : e) mesh.elements.push_back(int_of(n));
   }
-  mesh.regions = json.at("regions").get<std::vector<std::int32_t>>();
-  mesh.markers = json.at("markers").get<std::vector<std::int32_t>>();
+  mesh.regions = ints_of(json.at("regions"));
+  mesh.markers = ints_of(json.at("markers"));
   const Json names = json.value("marker_names", Json::object());
   for (const auto& [marker, name] : names.items()) {
     cell.marker_names.push_back({std::stoi(marker), on_one_line(name.get<std::string>())});
   }
   cell.has_boundary = true;
   for (const Json& facet : json.at("boundary")) {
-    for (const Json& n : facet.at("nodes")) cell.boundary.push_back(n.get<std::int32_t>());
-    cell.boundary_markers.push_back(facet.at("marker").get<std::int32_t>());
+    for (const Json& n : facet.at("nodes")) cell.boundary.push_back(int_of(n));
+    cell.boundary_markers.push_back(int_of(facet.at("marker")));
   }
   mesh.lower_to_higher.assign(mesh.points.size(), -1);
-  const auto lower = json.at("lower").get<std::vector<std::int32_t>>();
-  const auto higher = json.at("higher").get<std::vector<std::int32_t>>();
+  const auto lower = ints_of(json.at("lower"));
+  const auto higher = ints_of(json.at("higher"));
   if (lower.size() != higher.size()) return misfit("lower and higher differ in number");
   for (std::size_t i = 0; i < lower.size(); ++i) {
     if (lower[i] < 0 || at(lower[i]) >= mesh.points.size())
@@ -375,8 +383,7 @@ Result<SymmetryCellMesh> read_cell(std::string_view bytes) {
   auto cell = cell_of(*loose);
   if (!cell) return cell;
   MeshData& mesh = loose->mesh;
-  mesh.nodes_per_element = cell->nodes_per_element;  // which JSON does not tell
-  mesh.curved = true;                                // it may have been asked for
+  mesh.curved = true;  // it may have been asked for
   SYMCELL_TRY(check_loose(mesh));
   return cell;
 }

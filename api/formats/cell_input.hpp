@@ -13,7 +13,7 @@ namespace symcell {
 
 // What a file holds of a cell, in model coordinates.
 struct LooseCell {
-  MeshData mesh;
+  MeshData mesh;  // with its nodes an element
   std::vector<MarkerName> marker_names;
   // Facets as nodes, corners first; without them (VTU) they are found: those of one element that are on
   // no bound, with the marker of their nodes where these have one alone.

@@ -3,16 +3,22 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "api/formats/mesh_formats.hpp"
 #include "api/formats/vtu_reader.hpp"
+#include "core/geometry/axis_frame.hpp"
 
 namespace symcell {
 namespace {
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
+}
+
+bool is_finite(Point3 p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
 // A number in a field of fixed width, with blanks before it.
@@ -68,7 +74,7 @@ class FrdReader {
     return std::string(text.substr(begin, end - begin));
   }
 
-  Failure complain(ErrorCode code, const std::string& what) const {
+  [[nodiscard]] Failure complain(ErrorCode code, const std::string& what) const {
     return fail(code, "line " + std::to_string(number_) + ": " + what);
   }
 
@@ -78,6 +84,7 @@ class FrdReader {
                           std::optional<std::int32_t> diameter) {
     std::size_t components = 0;
     std::vector<Point3> vectors;
+    std::vector<char> seen;
     std::size_t found = 0;
     while (next_line()) {
       if (line_.starts_with(" -5")) {
@@ -96,8 +103,20 @@ class FrdReader {
                           "node " + std::to_string(node) + " is none of the cell's " +
                               std::to_string(nodes_) + "; are the results of this cell?");
         }
+        const auto place = static_cast<std::size_t>(node - 1);
         vectors.resize(nodes_);
-        vectors[static_cast<std::size_t>(node - 1)] = v;
+        seen.resize(nodes_, 0);
+        if (seen[place] != 0) {
+          return complain(
+              ErrorCode::kCountMismatch,
+              "node " + std::to_string(node) + " stands here for the second time in " + name);
+        }
+        if (!is_finite(v)) {
+          return complain(ErrorCode::kNonFinite,
+                          "node " + std::to_string(node) + " has no finite vector");
+        }
+        vectors[place] = v;
+        seen[place] = 1;
         ++found;
       }
     }
@@ -132,40 +151,41 @@ struct Complex3 {
 class Waves {
  public:
   Waves(const SymmetryCellMesh& cell, const NodalResult& result)
-      : cell_(cell), result_(result), rotations_(cell.fold) {}
+      : result_(result), axes_{{0, 0, 0}, cell.frame}, rotations_(cell.fold) {}
+
+  // By a whole number of sectors.
+  struct Shift {
+    double cosine = 1, sine = 0;  // of the phase
+    std::int32_t turn = 0;        // exponent
+  };
+  [[nodiscard]] Shift shift(std::int32_t sectors, std::int32_t diameter) const {
+    const double angle = 2 * std::numbers::pi * diameter * sectors / rotations_.fold();
+    return {std::cos(angle), std::sin(angle), rotations_.reduce(sectors)};
+  }
 
   [[nodiscard]] Complex3 local(std::size_t node) const {
-    return {to_local(result_.real[node]),
-            result_.imaginary.empty() ? Point3{} : to_local(result_.imaginary[node])};
+    return {axes_.to_local(result_.real[node]),
+            result_.imaginary.empty() ? Point3{} : axes_.to_local(result_.imaginary[node])};
   }
 
-  // What stands at a node of the cell, as it is `sectors` further.
-  [[nodiscard]] Complex3 moved(std::size_t node,
-                               std::int32_t sectors,
-                               std::int32_t diameter) const {
-    const Complex3 v = local(node);
-    const double angle = 2 * std::numbers::pi * diameter * sectors / cell_.fold;
-    const double c = std::cos(angle), s = std::sin(angle);
-    const std::int32_t k = rotations_.reduce(sectors);
-    return {rotations_.rotate(c * v.real - s * v.imaginary, k),
-            rotations_.rotate(s * v.real + c * v.imaginary, k)};
+  [[nodiscard]] Complex3 turned(const Complex3& v, std::int32_t exponent) const {
+    return {rotations_.rotate(v.real, exponent), rotations_.rotate(v.imaginary, exponent)};
   }
 
-  [[nodiscard]] Point3 to_model(Point3 p) const {
-    const auto& m = cell_.frame;
-    return {m[0] * p.x + m[1] * p.y + m[2] * p.z, m[3] * p.x + m[4] * p.y + m[5] * p.z,
-            m[6] * p.x + m[7] * p.y + m[8] * p.z};
+  [[nodiscard]] Complex3 moved(const Complex3& v, const Shift& by) const {
+    return turned(shifted(v, by), by.turn);
   }
+
+  // In its phase alone.
+  [[nodiscard]] static Complex3 shifted(const Complex3& v, const Shift& by) {
+    return {by.cosine * v.real - by.sine * v.imaginary, by.sine * v.real + by.cosine * v.imaginary};
+  }
+
+  [[nodiscard]] Point3 to_model(Point3 p) const { return axes_.to_model(p); }
 
  private:
-  [[nodiscard]] Point3 to_local(Point3 p) const {
-    const auto& m = cell_.frame;
-    return {m[0] * p.x + m[3] * p.y + m[6] * p.z, m[1] * p.x + m[4] * p.y + m[7] * p.z,
-            m[2] * p.x + m[5] * p.y + m[8] * p.z};
-  }
-
-  const SymmetryCellMesh& cell_;
   const NodalResult& result_;
+  AxisFrame axes_;  // of vectors, which have no origin
   RotationTable rotations_;
 };
 
@@ -204,25 +224,33 @@ NodalDiameter find_nodal_diameter(const SymmetryCellMesh& cell,
     const Complex3 v = waves.local(i);
     largest = std::max(largest, std::sqrt(dot(v.real, v.real) + dot(v.imaginary, v.imaginary)));
   }
-  NodalDiameter best{0, 0};
-  bool any = false;
+  // At the bounds, turned on by a sector, beside what stands there.
+  struct Pair {
+    Complex3 turned, there;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < cell.nodes.size(); ++i) {
+    const std::int32_t image = cell.lower_to_higher[i];
+    if (image < 0 || at(image) == i) continue;
+    pairs.push_back({waves.turned(waves.local(i), cell.fold > 1 ? 1 : 0), waves.local(at(image))});
+  }
+  NodalDiameter best{0, std::numeric_limits<double>::infinity()};
   const std::int32_t half = cell.fold / 2;
-  for (std::int32_t k = 0; k <= half; ++k) {
-    if (wanted && *wanted != k) continue;
+  for (std::int32_t k = std::max(0, wanted.value_or(0)); k <= std::min(half, wanted.value_or(half));
+       ++k) {
     for (const std::int32_t signed_k : {k, -k}) {
+      const Waves::Shift by = waves.shift(1, signed_k);
       double off = 0;
-      for (std::size_t i = 0; i < cell.nodes.size(); ++i) {
-        const std::int32_t image = cell.lower_to_higher[i];
-        if (image < 0 || at(image) == i) continue;
-        const Complex3 moved = waves.moved(i, 1, signed_k), there = waves.local(at(image));
-        const Point3 a = moved.real - there.real, b = moved.imaginary - there.imaginary;
+      for (const Pair& pair : pairs) {
+        const Complex3 moved = Waves::shifted(pair.turned, by);
+        const Point3 a = moved.real - pair.there.real, b = moved.imaginary - pair.there.imaginary;
         off = std::max(off, std::sqrt(dot(a, a) + dot(b, b)));
+        if (off >= best.mismatch) break;  // another fits better already
       }
-      if (any && off >= best.mismatch) continue;
-      best = {signed_k, off};
-      any = true;
+      if (off < best.mismatch) best = {signed_k, off};
     }
   }
+  if (!std::isfinite(best.mismatch)) best.mismatch = 0;
   if (largest > 0) best.mismatch /= largest;
   return best;
 }
@@ -241,9 +269,13 @@ Result<void> write_full_result(const SymmetryCellMesh& cell,
     if (own < 0) own = static_cast<std::int32_t>(i);
   }
   const Waves waves(cell, result);
+  std::vector<Waves::Shift> shifts;  // by how many sectors
+  shifts.reserve(at(cell.fold));
+  for (std::int32_t k = 0; k < cell.fold; ++k) shifts.push_back(waves.shift(k, signed_diameter));
   const auto moved = [&](OrbitVertex v) {
     const std::size_t own = at(node[at(v.orbit)]);
-    return waves.moved(own, v.exponent - cell.nodes[own].exponent, signed_diameter);
+    const std::int32_t sectors = v.exponent - cell.nodes[own].exponent;
+    return waves.moved(waves.local(own), shifts[at(sectors < 0 ? sectors + cell.fold : sectors)]);
   };
   const double c = std::cos(phase), s = std::sin(phase);
   const std::vector<internal::NodeVectors> fields{

@@ -24,11 +24,12 @@ struct NodalResult {
 };
 
 // CalculiX .frd (ASCII) of a deck of the cell: vectors of three components at all nodes; an imaginary part
-// (DISPI) belongs to the real one before it.  Errors: kSyntax, kTruncated, kCountMismatch, naming the line.
+// (DISPI) belongs to the real one before it.  Errors: kSyntax, kTruncated, kCountMismatch
+// (a node that is none, is missing or stands twice), kNonFinite, naming the line.
 [[nodiscard]] Result<std::vector<NodalResult>> read_frd(std::string_view bytes, std::size_t nodes);
 
 // A point array of three components of a VTU file, and one for the imaginary part (empty: none).
-// Errors: those of reading; kMissingField (no such array).
+// Errors: those of reading; kMissingField (no such array), kNonFinite.
 [[nodiscard]] Result<NodalResult> read_vtu_result(std::string_view bytes,
                                                   std::size_t nodes,
                                                   const std::string& array,

@@ -239,7 +239,7 @@ Result<void> open_vtu(std::string_view bytes, OpenVtu& file) {
   Result<VtuArrays> arrays = VtuArrays::open(root, appended);
   if (!arrays) return error_of(arrays);
   file.grid = grid;
-  file.arrays = std::move(*arrays);
+  file.arrays = *arrays;
   return {};
 }
 
@@ -273,6 +273,12 @@ Result<std::vector<Point3>> read_vtu_vectors(std::string_view bytes, const std::
     std::vector<Point3> vectors(static_cast<std::size_t>(nodes));
     for (std::size_t i = 0; i < vectors.size(); ++i) {
       vectors[i] = {(*values)[3 * i], (*values)[3 * i + 1], (*values)[3 * i + 2]};
+      if (std::isfinite(vectors[i].x) && std::isfinite(vectors[i].y) &&
+          std::isfinite(vectors[i].z)) {
+        continue;
+      }
+      return fail(ErrorCode::kNonFinite,
+                  "node " + std::to_string(i) + " has no finite vector in " + printable(name));
     }
     return vectors;
   }

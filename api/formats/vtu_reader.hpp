@@ -19,7 +19,7 @@ namespace symcell {
 [[nodiscard]] Result<MeshData> read_vtu(std::string_view bytes);
 
 // Point data of three components by its name.
-// Errors: as above; kMissingField names the arrays that there are.
+// Errors: as above; kMissingField names the arrays that there are, kNonFinite the node.
 [[nodiscard]] Result<std::vector<Point3>> read_vtu_vectors(std::string_view bytes,
                                                            const std::string& name);
 

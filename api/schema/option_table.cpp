@@ -337,7 +337,8 @@ Result<void> set_sizes(const OptionInfo& info, const OptionValue& value, MeshOpt
   if (!given) {
     return refuse(ErrorCode::kBadOption, info, value,
                   "largest edge lengths of groups, markers, vertices, regions and points, as "
-                  "bore=0.2,marker:3=0.5,vertex:17=0.02,region:2=1,point:0/1.5/2=0.1");
+                  "bore=0.2,marker:3=0.5,vertex:17=0.02,region:2=1,point:0/1.5/2=0.1 (a group with "
+                  "a comma in its name by its number, marker:N)");
   }
   options.sizes.clear();
   for (const Assignment& a : *given) {

@@ -109,7 +109,7 @@ void measure_cell_3(const SymmetryCellMesh& cell, Statistics& statistics) {
       for (std::size_t i = 0; i < 10; ++i) {
         q[i] = place[static_cast<std::size_t>(cell.elements[at + i])];
       }
-      c.measure += volume_of(jacobian_coefficients(q));
+      c.measure += is_straight(q) ? f.volume : volume_of(jacobian_coefficients(q));
     } else {
       c.measure += f.volume;
     }

@@ -102,9 +102,9 @@ Result<MeshOutcome> mesh_to_count(
   const std::uint64_t most = kTooMany * options.target_elements + kFew;
   const Budget budget(context, most);
   int meshes = 1;
-  // Without a shorter edge there may be too many already.
-  const bool may_be_reached = off < -kWithin;
-  for (; may_be_reached && meshes < kMostMeshes && std::abs(off) > kWithin; ++meshes) {
+  // Without a shorter edge there may be too many already: then none is looked for.
+  const int most_meshes = off < -kWithin ? kMostMeshes : meshes;
+  for (; meshes < most_meshes && std::abs(off) > kWithin; ++meshes) {
     SYMCELL_TRY(context.check());
     own.max_edge = std::min(options.max_edge, search.next());
     auto made = mesh(own);

@@ -48,6 +48,7 @@ std::string_view warning_code_name(WarningCode code) {
     case WarningCode::kArcsAsChords: return "arcs_as_chords";
     case WarningCode::kElementsMissed: return "elements_missed";
     case WarningCode::kUnitsConverted: return "units_converted";
+    case WarningCode::kSizesWithoutEffect: return "sizes_without_effect";
     case WarningCode::kSolidsUnited: return "solids_united";
     case WarningCode::kFacesAsChords: return "faces_as_chords";
     case WarningCode::kExemptElements: return "exempt_elements";
@@ -244,6 +245,12 @@ Warning elements_missed_warning(std::uint64_t wanted, std::uint64_t found) {
               " elements to within 10 %: the cell has " + std::to_string(found),
           found > wanted ? "take more elements, or a model with fewer small features"
                          : "give max_edge"};
+}
+
+Warning sizes_without_effect_warning(const std::vector<std::string>& sizes) {
+  return {WarningCode::kSizesWithoutEffect,
+          "of the sizes these change nothing: " + listed(sizes, "; "),
+          "correct their places or lengths, or leave them away"};
 }
 
 Result<void> check_strict(bool strict, const std::vector<Warning>& warnings) {

@@ -33,8 +33,9 @@ enum class WarningCode : std::uint8_t {
   kElementsMissed,        // no size gives the number of elements that was asked for
   kUnitsConverted,        // a CAD file's lengths are not in millimetres
   kSolidsUnited,          // several solids of a CAD file are meshed as one
-  kFacesAsChords,   // vertices or sides of the mesh lie beside the curved faces they belong to
-  kExemptElements,  // many elements break a bound that the input forces them to
+  kFacesAsChords,       // vertices or sides of the mesh lie beside the curved faces they belong to
+  kSizesWithoutEffect,  // sizes that ask for no more than others do
+  kExemptElements,      // many elements break a bound that the input forces them to
 };
 
 // The stable spelling used in JSON and logs.
@@ -96,6 +97,9 @@ struct Warning {
 
 // `found`: elements of the cell nearest to `wanted`.
 [[nodiscard]] Warning elements_missed_warning(std::uint64_t wanted, std::uint64_t found);
+
+// `sizes`: as given, each with the reason.  Requires: it is not empty.
+[[nodiscard]] Warning sizes_without_effect_warning(const std::vector<std::string>& sizes);
 
 // What the option `strict` makes of warnings.  Errors: kStrictWarnings, which lists them, unless
 // there are none or `strict` is false.

@@ -33,7 +33,8 @@ struct AnalyticSurface {
   Point3 apex;             // of a cone
 };
 
-// The point of the surface that is nearest to p; p itself for a kind without one.
+// The point of the surface that is nearest to p; p itself for a kind without one. Where many are as near, on the
+// axis, in the centre or the tube's middle, it is one of them.
 [[nodiscard]] Point3 project_onto(const AnalyticSurface& surface, Point3 p);
 
 // The normal of the surface near p, away from its axis, centre or tube, of length 1; of a plane its own.

@@ -12,6 +12,22 @@ namespace symcell {
 
 using QuadraticTet = std::array<Point3, 10>;
 
+// A node so near to the middle of its side, in shares of the side, makes no difference to a volume.
+inline constexpr double kStraightRel = 1e-12;
+
+// Whether all sides are straight with their nodes in the middle: an element as of order 1.
+[[nodiscard]] inline bool is_straight(const QuadraticTet& p) {
+  constexpr std::array<std::array<std::size_t, 2>, 6> kSides = {
+      {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+  for (std::size_t s = 0; s < kSides.size(); ++s) {
+    const Point3& a = p[kSides[s][0]];
+    const Point3& b = p[kSides[s][1]];
+    const double beside2 = squared_distance(p[4 + s], 0.5 * (a + b));
+    if (!(beside2 <= kStraightRel * kStraightRel * squared_distance(a, b))) return false;
+  }
+  return true;
+}
+
 // The twenty Bezier coefficients of the Jacobian determinant, which is a cubic: their least is a lower bound
 // of it everywhere, and six volumes times one for an element with straight sides and middles.
 [[nodiscard]] inline std::array<double, 20> jacobian_coefficients(const QuadraticTet& p) {

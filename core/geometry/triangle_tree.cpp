@@ -27,6 +27,23 @@ bool meet(const Point3& low, const Point3& high, const Point3& low2, const Point
          low.z <= high2.z && low2.z <= high.z;
 }
 
+// How far along the ray the box begins; infinity: it misses it, or does not meet it before `most`.
+double entry(const Point3& low, const Point3& high, Point3 from, Point3 direction, double most) {
+  double enter = 0, leave = most;
+  const auto narrow = [&](double least, double greatest, double at, double along) {
+    const double inverse = 1 / along;
+    double a = (least - at) * inverse, b = (greatest - at) * inverse;
+    if (a > b) std::swap(a, b);
+    // Not a number where the ray runs within a side: no bound.
+    if (a > enter) enter = a;
+    if (b < leave) leave = b;
+  };
+  narrow(low.x, high.x, from.x, direction.x);
+  narrow(low.y, high.y, from.y, direction.y);
+  narrow(low.z, high.z, from.z, direction.z);
+  return enter <= leave ? enter : std::numeric_limits<double>::infinity();
+}
+
 // The foot of the perpendicular from p on the plane of a thin triangle, known to be inside it: from
 // the foot on the longest side on, as what is left from there is no longer than the triangle is thin.
 Point3 foot_in_thin(Point3 p, Point3 a, Point3 b, Point3 c) {
@@ -225,6 +242,45 @@ bool TriangleTree::within(Point3 p, double reach, std::int32_t& last) const {
   if (last >= 0 && look(items_[last])) return true;
   search(p, squared_reach, last, look);
   return found;
+}
+
+void TriangleTree::look_along(std::int32_t id,
+                              Point3 from,
+                              Point3 direction,
+                              Meeting& first) const {
+  const Node& node = nodes_[id];
+  for (std::int32_t i = node.begin; i < node.begin + node.count; ++i) {
+    const Item& item = items_[i];
+    const Point3 u = item.b - item.a, v = item.c - item.a;
+    const Point3 p = cross(direction, v);
+    const double det = dot(u, p);
+    if (det == 0) continue;
+    const Point3 w = from - item.a;
+    const double s = dot(w, p) / det;
+    const Point3 q = cross(w, u);
+    const double r = dot(direction, q) / det;
+    if (s < 0 || r < 0 || s + r > 1) continue;
+    const double distance = dot(v, q) / det;
+    if (distance > 0 && distance < first.distance) first = {item.triangle, distance};
+  }
+  if (node.count > 0) return;
+  std::int32_t near = id + 1, far = node.begin;
+  const auto entry_of = [&](std::int32_t child) {
+    return entry(nodes_[child].low, nodes_[child].high, from, direction, first.distance);
+  };
+  double enter = entry_of(near), other = entry_of(far);
+  if (other < enter) {
+    std::swap(near, far);
+    std::swap(enter, other);
+  }
+  if (enter < first.distance) look_along(near, from, direction, first);
+  if (other < first.distance) look_along(far, from, direction, first);
+}
+
+TriangleTree::Meeting TriangleTree::first_met(Point3 from, Point3 direction) const {
+  Meeting first;
+  if (!nodes_.empty()) look_along(0, from, direction, first);
+  return first;
 }
 
 void TriangleTree::visit_meeting_boxes(

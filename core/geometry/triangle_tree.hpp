@@ -1,5 +1,5 @@
-// A tree of boxes over triangles: the nearest point of a surface, within a reach; triangles that
-// may meet.
+// A tree of boxes over triangles: the nearest point of a surface, within a reach; the first triangle on a
+// ray; triangles that may meet.
 //
 // Built by splitting at the median centroid along the longest side. An own tree and not CGAL's:
 // the queries here are bounded ("is the surface within 1e-3 of here?"), which lets most of them end
@@ -48,6 +48,14 @@ class TriangleTree {
   // The same, beginning at `last` as above.
   [[nodiscard]] bool within(Point3 p, double reach, std::int32_t& last) const;
 
+  struct Meeting {
+    std::int32_t triangle = -1;  // -1: none
+    double distance = std::numeric_limits<double>::infinity();
+  };
+  // The first triangle that the ray meets behind its beginning, from either side.  `direction`: of length 1.
+  // Cost: O(log n) as a rule.
+  [[nodiscard]] Meeting first_met(Point3 from, Point3 direction) const;
+
   // Calls visit(s, t) once for each two triangles whose closed boxes have a point in common; visit
   // returns true to stop.
   void visit_meeting_boxes(const std::function<bool(std::int32_t, std::int32_t)>& visit) const;
@@ -75,6 +83,7 @@ class TriangleTree {
   std::int32_t build(std::span<Centroid> order, const MakeItem& item);
   template <class Visit>
   bool search_below(std::int32_t root, Point3 p, double& squared_reach, const Visit& visit) const;
+  void look_along(std::int32_t node, Point3 from, Point3 direction, Meeting& first) const;
   template <class Visit>
   void search(Point3 p, double& squared_reach, std::int32_t last, const Visit& visit) const;
 

@@ -14,9 +14,6 @@
 
 namespace symcell {
 
-// As read: nothing is welded, oriented or checked. STL has three vertices of its own a triangle;
-// vertex and triangle indices are those of the file (polygons of OFF, PLY and OBJ are cut into
-// fans, `source_face` then names the polygon).
 // A face of a CAD model.
 struct CadFace {
   AnalyticSurface surface;
@@ -29,12 +26,13 @@ struct CadNotes {
   std::string unit;  // of length, in the file; coordinates are in millimetres
   std::vector<std::string> solids;
   std::uint32_t mended = 0;       // solids
-  std::uint32_t sewn = 0;         // faces, where the file holds no solids
-  std::uint32_t open_edges = 0;   // of sewn faces
   std::uint32_t left_out = 0;     // faces that are no part of a solid
   std::uint32_t inner_faces = 0;  // between two solids
 };
 
+// As read: nothing is welded, oriented or checked. STL has three vertices of its own a triangle;
+// vertex and triangle indices are those of the file (polygons of OFF, PLY and OBJ are cut into
+// fans, `source_face` then names the polygon).
 struct TriangleSurface {
   std::vector<Point3> vertices;
   std::vector<std::array<std::int32_t, 3>> triangles;

@@ -57,6 +57,9 @@ Result<void> curve(const SectorSource& source,
       if (of_moves.vertices > 0) stats.delaunay = false;
       outcome.mesh = std::move(moved);
       counts = of_moves;
+    } else {
+      // All stay where they were.
+      counts.left = of_moves.left + of_moves.vertices;
     }
     SYMCELL_TRY(context.check());
   }
@@ -64,10 +67,11 @@ Result<void> curve(const SectorSource& source,
     auto elevated = faces->elevate(outcome.mesh, counts, context);
     if (!elevated) return error_of(elevated);
     outcome.mesh = std::move(*elevated);
-    const bool told =
-        counts.left > 0 || counts.straightened > 0 || (faces->is_exact() && counts.other_faces > 0);
-    if (told) stats.warnings.push_back(faces_as_chords_warning(counts));
   }
+  // Of order 1 sides are chords, as they are of faces of no known kind.
+  const bool beside = options.order == 2 &&
+                      (counts.straightened > 0 || (faces->is_exact() && counts.other_faces > 0));
+  if (counts.left > 0 || beside) stats.warnings.push_back(faces_as_chords_warning(counts));
   stats.curving = counts;
   return {};
 }

@@ -1,4 +1,4 @@
-// Shared by the parts of verify_mesh; nothing else includes it.
+// Shared by the parts of verify_mesh; beside them only what reads cells of files includes it, for their facets.
 #pragma once
 
 #include <algorithm>

@@ -195,6 +195,22 @@ void write_coloured() {
   std::ofstream(folder + "/coloured.step") << text;
 }
 
+// Two boxes that overlap, with four sides in common planes; every face has a name of its solid and a number.
+void write_named_overlap() {
+  const auto box = [](double from, double to) {
+    return BRepPrimAPI_MakeBox(gp_Pnt(from, -10, 0), gp_Pnt(to, 10, 10)).Shape();
+  };
+  write_step("named_overlap", compound(box(0, 20), box(10, 30)));
+  std::string text = text_of(folder + "/named_overlap.step");
+  int number = 0;
+  const std::string begin = "ADVANCED_FACE('";
+  for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at + 1)) {
+    text.insert(at + begin.size(), (number < 6 ? "first " : "second ") + std::to_string(number));
+    ++number;
+  }
+  std::ofstream(folder + "/named_overlap.step") << text;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -218,5 +234,6 @@ int main(int argc, char** argv) {
   write_iges("disc_solid", plate, 1);
   write_step("disc", plate);
   write_coloured();
+  write_named_overlap();
   return 0;
 }

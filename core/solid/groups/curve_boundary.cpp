@@ -90,11 +90,10 @@ std::array<Point3, 4> corners_of(const SymmetryCellMesh& cell,
 }  // namespace
 
 CurvedBoundary::CurvedBoundary(const FaceGroups& groups,
-                               const IndexedSurface& surface,
                                const TriangleTree& tree,
                                const SymmetryCellMesh& cell,
                                const CurvingBounds& bounds)
-    : groups_(groups), surface_(surface), tree_(tree), bounds_(bounds), rotations_(cell.fold) {
+    : groups_(groups), tree_(tree), bounds_(bounds), rotations_(cell.fold) {
   piece_.reserve(cell.facet_count());
   for (std::size_t b = 0; b < cell.facet_count(); ++b) piece_.push_back(piece_of_facet(cell, b));
 }

@@ -14,7 +14,6 @@
 #include "core/cell/quadratic.hpp"
 #include "core/cell/statistics.hpp"
 #include "core/cell/symmetry_cell_mesh.hpp"
-#include "core/geometry/indexed_surface.hpp"
 #include "core/geometry/rotation.hpp"
 #include "core/geometry/triangle_tree.hpp"
 #include "core/model/mesh_options.hpp"
@@ -34,10 +33,9 @@ struct CurvingBounds {
 
 class CurvedBoundary {
  public:
-  // `groups`: with the fits of their pieces.  `surface`, `tree`: as of the groups, in the cell's local
-  // frame.  `cell`: of order 1, with their markers.
+  // `groups`: with the fits of their pieces.  `tree`: of their surface, in the cell's local frame.
+  // `cell`: of order 1, with their markers.
   CurvedBoundary(const FaceGroups& groups,
-                 const IndexedSurface& surface,
                  const TriangleTree& tree,
                  const SymmetryCellMesh& cell,
                  const CurvingBounds& bounds);
@@ -77,7 +75,6 @@ class CurvedBoundary {
   [[nodiscard]] bool is_curved(const std::vector<Constraint>& constraints) const;
 
   const FaceGroups& groups_;
-  const IndexedSurface& surface_;
   const TriangleTree& tree_;
   CurvingBounds bounds_;
   RotationTable rotations_;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -19,13 +20,12 @@ namespace symcell::solid {
 namespace {
 
 constexpr double kRadiansADegree = std::numbers::pi / 180;
-// A scan may have a sharp edge at every other triangle. The largest so many faces are groups.
+// A scan may have a sharp edge at every other triangle, and a file may name each of its parts. The largest so many
+// faces are groups.
 constexpr std::size_t kMostGroups = 400;
 constexpr double kWholeTurnDeg = 360;
 // Limits are looked at every so many triangles.
 constexpr std::size_t kCheckedEach = 4096;
-// What is left is one.
-constexpr const char* kRest = "rest";
 // An axis is that of symmetry if their directions differ by less, in radians, and their distance is
 // within twice the reach of copies.
 constexpr double kSameAxis = 5e-3;
@@ -117,7 +117,6 @@ class Grouper {
 
   // What a group has beside its figures.
   struct Draft {
-    std::int32_t region = 0;
     double area = 0;
     Point3 moment;  // area times centroid
     std::vector<std::int32_t> triangles;
@@ -165,7 +164,6 @@ class Grouper {
       Draft& d = drafts[at(regions.of_triangle[t])];
       const Triangle& c = surface_.triangles[t];
       const double area = length(area_normal(surface_, c)) / 2;
-      d.region = regions.of_triangle[t];
       d.area += area;
       d.moment = d.moment + (area / 3) * (surface_.points[at(c[0])] + surface_.points[at(c[1])] +
                                           surface_.points[at(c[2])]);
@@ -176,18 +174,33 @@ class Grouper {
       std::stable_sort(drafts.begin(), drafts.end(),
                        [](const Draft& a, const Draft& b) { return a.area > b.area; });
     }
-    if (drafts.size() > kMostGroups && !by_name_) {
-      for (std::size_t i = kMostGroups; i < drafts.size(); ++i) {
-        Draft& rest = drafts[kMostGroups - 1];
-        rest.area += drafts[i].area;
-        rest.moment = rest.moment + drafts[i].moment;
-        rest.triangles.insert(rest.triangles.end(), drafts[i].triangles.begin(),
-                              drafts[i].triangles.end());
-      }
-      drafts.resize(kMostGroups);
-      has_rest_ = true;
-    }
+    if (drafts.size() > kMostGroups) join_smallest(drafts);
     for (const Draft& d : drafts) add_group(d);
+  }
+
+  // The smallest become one, the last; the others stay in their order.
+  void join_smallest(std::vector<Draft>& drafts) {
+    std::vector<std::size_t> by_area(drafts.size());
+    std::iota(by_area.begin(), by_area.end(), std::size_t{0});
+    std::stable_sort(by_area.begin(), by_area.end(),
+                     [&](std::size_t a, std::size_t b) { return drafts[a].area > drafts[b].area; });
+    std::vector<char> is_large(drafts.size(), 0);
+    for (std::size_t i = 0; i + 1 < kMostGroups; ++i) is_large[by_area[i]] = 1;
+    Draft rest;
+    std::vector<Draft> kept;
+    for (std::size_t i = 0; i < drafts.size(); ++i) {
+      Draft& d = drafts[i];
+      if (is_large[i] != 0) {
+        kept.push_back(std::move(d));
+        continue;
+      }
+      rest.area += d.area;
+      rest.moment = rest.moment + d.moment;
+      rest.triangles.insert(rest.triangles.end(), d.triangles.begin(), d.triangles.end());
+    }
+    kept.push_back(std::move(rest));
+    drafts = std::move(kept);
+    has_rest_ = true;
   }
 
   void add_group(const Draft& d) {
@@ -212,7 +225,12 @@ class Grouper {
       most = std::max(most, area);
     }
     const bool rest = has_rest_ && at(number) == kMostGroups;
-    const ShapeFit fit = rest ? ShapeFit{} : shape_of(own);
+    ShapeFit fit;
+    if (!rest) {
+      fit = shape_of(own);
+      shapes_[largest->first] = fit;
+      if (fit.kind == FaceKind::kSurface) fit = shape_of_copies(d.triangles, fit);
+    }
     FaceGroup group;
     group.marker = number;
     group.kind = fit.kind;
@@ -224,7 +242,10 @@ class Grouper {
         options_.frame.to_model((1.0 / 3) * (surface_.points[at(c[0])] + surface_.points[at(c[1])] +
                                              surface_.points[at(c[2])]));
     describe(fit, group);
-    if (by_name_) file_name_.push_back(given_.group_names[at(names_[at(d.triangles.front())])]);
+    if (by_name_) {
+      file_name_.push_back(rest ? std::string()
+                                : given_.group_names[at(names_[at(d.triangles.front())])]);
+    }
     if (!given_.cad_faces.empty()) {
       const CadFace& face = given_.cad_faces[at(names_[at(own.front())])];
       if (!rest) group.colour = face.colour;
@@ -249,6 +270,15 @@ class Grouper {
     return fit_shape(surface_, triangles, options_.noise);
   }
 
+  // Copies of a face of too few chords, as the tips of a gear have, lie on one cylinder about the axis with
+  // certainty; else the shape is `alone`.
+  [[nodiscard]] ShapeFit shape_of_copies(const std::vector<std::int32_t>& triangles,
+                                         const ShapeFit& alone) const {
+    if (options_.fold == 1 || !given_.cad_faces.empty()) return alone;
+    const ShapeFit all = fit_shape(surface_, triangles, options_.noise);
+    return is_on_symmetry_axis(all) ? all : alone;
+  }
+
   // `classes`: per triangle, of copies.
   void fit_pieces(const std::vector<std::int32_t>& classes) {
     std::vector<std::vector<std::int32_t>> triangles(at(pieces_.count));
@@ -256,8 +286,16 @@ class Grouper {
       triangles[at(pieces_.of_triangle[t])].push_back(static_cast<std::int32_t>(t));
     }
     result_.piece_of_triangle = pieces_.of_triangle;
-    for (const std::vector<std::int32_t>& own : triangles) {
-      ShapeFit fit = own.empty() ? ShapeFit{} : shape_of(own);
+    for (std::size_t piece = 0; piece < triangles.size(); ++piece) {
+      const std::vector<std::int32_t>& own = triangles[piece];
+      // Of the largest pieces of groups it is known.
+      const auto known = shapes_.find(static_cast<std::int32_t>(piece));
+      ShapeFit fit;
+      if (known != shapes_.end()) {
+        fit = known->second;
+      } else if (!own.empty()) {
+        fit = shape_of(own);
+      }
       for (const std::int32_t t : own) {
         for (const std::int32_t v : surface_.triangles[at(t)]) {
           const Point3& p = surface_.points[at(v)];
@@ -330,18 +368,19 @@ class Grouper {
 
   void name_groups() {
     const double widest = widest_about_axis();
-    std::map<std::string, int> counts;
+    std::map<std::string, int> counts, uses;
+    for (const std::string& name : file_name_) ++uses[name];
     std::set<std::string> taken;
     for (std::size_t i = 0; i < result_.groups.size(); ++i) {
       auto [name, counted] = stem(i, widest);
       if (has_rest_ && i + 1 == kMostGroups) {
-        name = kRest;
+        name = kRestOfFaces;
         counted = false;
       }
       if (!file_name_.empty() && !file_name_[i].empty()) {
         const std::string& own = file_name_[i];
-        const bool alone = std::count(file_name_.begin(), file_name_.end(), file_name_[i]) == 1;
-        name = alone ? own : own + "_" + name;
+        const bool alone = uses[own] == 1;
+        name = alone ? own : std::string(own).append("_").append(name);
         counted = !alone && counted;
       }
       std::string full;
@@ -360,6 +399,7 @@ class Grouper {
   ExecutionContext& context_;
   FaceGroups result_;
   FaceRegions pieces_;
+  std::map<std::int32_t, ShapeFit> shapes_;  // of those pieces that stand for a group
   std::vector<std::int32_t> names_;     // per triangle of the surface; empty: the file names none
   std::vector<std::string> file_name_;  // per group; empty: the file names none
   bool by_name_ = false;                // groups are in the order of the file's names

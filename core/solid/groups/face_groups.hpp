@@ -3,7 +3,8 @@
 // A face is what hangs together without an edge of the feature angle; copies of a face are one
 // group. Names say what a group is where that is certain, and are counted, the largest first:
 // `plane_1`, `cylinder_r12.5_1`, `hole_r4_1` (a hollow cylinder that closes), `cone_30deg_1`,
-// `sphere_r2_1`, `torus_r20_1`, `surface_1`; about the axis of symmetry `bore` and `rim`. Where the
+// `sphere_r2_1`, `torus_r20_1`, `surface_1`; about the axis of symmetry `bore` and `rim`, which faces of a
+// few chords are together with their copies. Where the
 // file names parts of its own these are the groups.
 #pragma once
 
@@ -22,6 +23,9 @@
 #include "core/solid/groups/shape_fit.hpp"
 
 namespace symcell::solid {
+
+// The name of the smaller groups where there are more than can be told apart.
+inline constexpr const char* kRestOfFaces = "rest";
 
 struct FaceGroups {
   std::vector<FaceGroup> groups;          // by number, from 1; in the model's coordinates

@@ -49,6 +49,15 @@ double turn_between(Point3 a, Point3 b) {
 
 }  // namespace
 
+bool is_thin(const IndexedSurface& surface, const Triangle& c, double noise) {
+  double longest = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    longest =
+        std::max(longest, distance(surface.points[at(c[i])], surface.points[at(c[(i + 1) % 3])]));
+  }
+  return length(area_normal(surface, c)) <= kThinNoises * noise * longest;
+}
+
 FaceRegions find_face_regions(const IndexedSurface& surface,
                               double feature_angle,
                               double noise,
@@ -57,14 +66,8 @@ FaceRegions find_face_regions(const IndexedSurface& surface,
   std::vector<Point3> normals(triangles);
   std::vector<char> thin(triangles, 0);
   for (std::size_t t = 0; t < triangles; ++t) {
-    const Triangle& c = surface.triangles[t];
-    normals[t] = area_normal(surface, c);
-    double longest = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      longest =
-          std::max(longest, distance(surface.points[at(c[i])], surface.points[at(c[(i + 1) % 3])]));
-    }
-    thin[t] = length(normals[t]) <= kThinNoises * noise * longest ? 1 : 0;
+    normals[t] = area_normal(surface, surface.triangles[t]);
+    thin[t] = is_thin(surface, surface.triangles[t], noise) ? 1 : 0;
   }
   std::vector<Side> sides;
   const std::vector<EdgeUse> uses = sorted_edge_uses(surface.triangles);

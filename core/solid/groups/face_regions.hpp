@@ -18,9 +18,12 @@ struct FaceRegions {
   std::vector<std::int32_t> of_triangle;  // numbers from 0, in the order of the triangles
 };
 
+// Whether a triangle is too low, for so much noise of its coordinates, to have a normal to go by.
+[[nodiscard]] bool is_thin(const IndexedSurface& surface, const Triangle& triangle, double noise);
+
 // `feature_angle`: radians; an edge at which the surface turns by as much or more lies between two
-// faces. `noise`: of the coordinates; triangles no higher have no normal to go by and belong to a
-// neighbour. `names`: per triangle, a face has one of them only; empty: all have the same.
+// faces. `noise`: of the coordinates; thin triangles belong to a neighbour. `names`: per triangle, a
+// face has one of them only; empty: all have the same.
 // Cost: O(T log T).
 [[nodiscard]] FaceRegions find_face_regions(const IndexedSurface& surface,
                                             double feature_angle,

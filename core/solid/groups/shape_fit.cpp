@@ -8,6 +8,7 @@
 
 #include "core/geometry/axis_frame.hpp"
 #include "core/geometry/symmetric_eigen.hpp"
+#include "core/solid/groups/face_regions.hpp"
 
 namespace symcell::solid {
 namespace {
@@ -29,6 +30,8 @@ constexpr std::size_t kLeastOfSphere = 12;
 constexpr double kWideGap = 100 * kRadiansADegree;
 // A radius of more than so many extents of the face is not told from a plane, or from noise.
 constexpr double kMostExtents = 50;
+// The arc of a torus's tube stands out over its chord by so many tolerances.
+constexpr double kBendOfTorus = 10;
 // A cone with an angle below is a cylinder, and above its complement a plane.
 constexpr double kLeastConeAngle = 0.5 * kRadiansADegree;
 
@@ -95,15 +98,9 @@ class Fitter {
       if (!(twice > 0)) continue;
       const Point3 middle = (1.0 / 3) * (surface.points[at(c[0])] + surface.points[at(c[1])] +
                                          surface.points[at(c[2])]);
-      // What is thin has a normal of chance.
-      double longest = 0;
-      for (std::size_t i = 0; i < 3; ++i) {
-        longest = std::max(longest,
-                           distance(surface.points[at(c[i])], surface.points[at(c[(i + 1) % 3])]));
-      }
       area_ += twice / 2;
       centroid_ = centroid_ + (twice / 2) * middle;
-      if (twice <= kThinNoises * noise * longest) continue;
+      if (is_thin(surface, c, noise)) continue;  // with a normal of chance
       samples_.push_back({middle, (1 / twice) * n, twice / 2});
     }
     std::sort(ids.begin(), ids.end());
@@ -132,17 +129,15 @@ class Fitter {
   [[nodiscard]] ShapeFit complete(const AnalyticSurface& known) const {
     ShapeFit fit;
     static_cast<AnalyticSurface&>(fit) = known;
-    double outwards = 0;
-    for (const Sample& s : samples_) {
-      outwards += s.area * dot(s.normal, normal_at(known, s.middle));
-    }
+    if (known.kind == FaceKind::kSurface) return fit;
+    const bool inwards = outwards(known) < 0;
     if (known.kind == FaceKind::kPlane) {
       fit.origin = centroid_;
-      if (outwards < 0) fit.direction = -1.0 * fit.direction;
+      if (inwards) fit.direction = -1.0 * fit.direction;
       return fit;
     }
-    fit.concave = outwards < 0;
-    if (known.kind == FaceKind::kSphere || known.kind == FaceKind::kSurface) return fit;
+    fit.concave = inwards;
+    if (known.kind == FaceKind::kSphere) return fit;
     const std::vector<Point3> local = in_frame(AxisFrame::of_axis(known.origin, known.direction));
     double widest = 0;
     for (const Point3& p : local) widest = std::max(widest, std::hypot(p.x, p.y));
@@ -152,8 +147,6 @@ class Fitter {
   }
 
  private:
-  static constexpr double kThinNoises = 20;  // as of faces
-
   [[nodiscard]] double tolerance(double size) const {
     return std::max(kNoises * noise_, kOffRel * size);
   }
@@ -207,6 +200,7 @@ class Fitter {
                                   Point2 centre,
                                   double radius) const {
     std::vector<double> angles;
+    angles.reserve(local.size());
     for (const Point3& p : local) angles.push_back(std::atan2(p.y - centre.y, p.x - centre.x));
     std::sort(angles.begin(), angles.end());
     Round round;
@@ -248,15 +242,19 @@ class Fitter {
     return local;
   }
 
-  // Whether triangles look as the surface does in their middles; `outwards`: its normal there, either way.
-  template <class Normal>
-  [[nodiscard]] bool normals_agree(const Normal& outwards, bool& concave) const {
+  // More than 0: the triangles look outwards of the surface, as it does at most places.
+  [[nodiscard]] double outwards(const AnalyticSurface& surface) const {
     double sum = 0;
-    for (const Sample& s : samples_) sum += s.area * dot(s.normal, outwards(s.middle));
-    concave = sum < 0;
-    const double sign = concave ? -1 : 1;
+    for (const Sample& s : samples_) sum += s.area * dot(s.normal, normal_at(surface, s.middle));
+    return sum;
+  }
+
+  // Whether triangles look as the surface does in their middles, all outwards or all inwards, which is told.
+  [[nodiscard]] bool normals_agree(ShapeFit& fit) const {
+    fit.concave = outwards(fit) < 0;
+    const double sign = fit.concave ? -1 : 1;
     return std::all_of(samples_.begin(), samples_.end(), [&](const Sample& s) {
-      return sign * dot(s.normal, outwards(s.middle)) >= std::cos(kNormalsAgree);
+      return sign * dot(s.normal, normal_at(fit, s.middle)) >= std::cos(kNormalsAgree);
     });
   }
 
@@ -281,12 +279,7 @@ class Fitter {
     fit.direction = direction;
     fit.radius = radius;
     fit.closes = round.widest < kWideGap;
-    const auto outwards = [&](Point3 p) {
-      const Point3 d = p - fit.origin;
-      const Point3 r = d - dot(d, direction) * direction;
-      return (1 / length(r)) * r;
-    };
-    if (!normals_agree(outwards, fit.concave)) return std::nullopt;
+    if (!normals_agree(fit)) return std::nullopt;
     return fit;
   }
 
@@ -310,10 +303,7 @@ class Fitter {
     for (const Point3& p : points_) {
       if (std::abs(distance(p, fit.origin) - radius) > tolerance(radius)) return std::nullopt;
     }
-    const auto outwards = [&](Point3 p) {
-      return (1 / distance(p, fit.origin)) * (p - fit.origin);
-    };
-    if (!normals_agree(outwards, fit.concave)) return std::nullopt;
+    if (!normals_agree(fit)) return std::nullopt;
     return fit;
   }
 
@@ -384,12 +374,7 @@ class Fitter {
     fit.half_angle = half;
     fit.radius = widest;
     fit.closes = round.widest < kWideGap;
-    const auto outwards = [&](Point3 p) {
-      const Point3 d = p - fit.apex;
-      const Point3 r = d - dot(d, fit.direction) * fit.direction;
-      return std::cos(half) * ((1 / length(r)) * r) - std::sin(half) * fit.direction;
-    };
-    if (!normals_agree(outwards, fit.concave)) return std::nullopt;
+    if (!normals_agree(fit)) return std::nullopt;
     return fit;
   }
 
@@ -428,22 +413,21 @@ class Fitter {
       if (std::abs(std::hypot(p.x - major, p.y - z) - minor) > tolerance(minor))
         return std::nullopt;
     }
-    if (round_about(profile, {major, z}, minor).places < kLeastLines - 1 ||
-        round_about(points_, {0, 0}, major).places < kLeastLines) {
+    // The four places of a bore with two chamfers lie on a circle, too.
+    const Round tube = round_about(profile, {major, z}, minor);
+    if (tube.places < kLeastLines || round_about(points_, {0, 0}, major).places < kLeastLines) {
       return std::nullopt;
     }
+    // What bends by no more than vertices may be off is not told from a cylinder or a cone.
+    const double half_arc = std::numbers::pi - tube.widest / 2;
+    if (minor * (1 - std::cos(half_arc)) < kBendOfTorus * tolerance(minor)) return std::nullopt;
     ShapeFit fit;
     fit.kind = FaceKind::kTorus;
     fit.origin = {0, 0, centroid_.z + z};
     fit.direction = {0, 0, 1};
     fit.radius = major;
     fit.tube_radius = minor;
-    const auto outwards = [&](Point3 p) {
-      const double r = std::hypot(p.x, p.y);
-      const Point3 ring{major * p.x / r, major * p.y / r, fit.origin.z};
-      return (1 / distance(p, ring)) * (p - ring);
-    };
-    if (!normals_agree(outwards, fit.concave)) return std::nullopt;
+    if (!normals_agree(fit)) return std::nullopt;
     return fit;
   }
 

@@ -84,15 +84,11 @@ void Criteria::find_sizes(const InitialTetrahedralization& solid, const MeshOpti
   if (!graded) return;
   // Away from short segments, too.
   std::vector<SizeSource> sources;
-  for (TetId t = 0; t < mesh.tet_slots(); ++t) {
-    if (!mesh.alive(t)) continue;
-    for (const auto& e : kEdgeCorners) {
-      const std::int32_t segment = mesh.segment_of(mesh.corner(t, e[0]), mesh.corner(t, e[1]));
-      if (segment == kNoSegment || segment == solid.axis_segment()) continue;
-      const Point3 a = mesh.corner_point(t, e[0]), b = mesh.corner_point(t, e[1]);
-      sources.push_back({{a, b, b}, distance(a, b)});
-    }
-  }
+  mesh.edges().for_each([&](const EdgeKey& key, std::int32_t segment) {
+    if (segment == solid.axis_segment()) return;
+    const Point3 a = mesh.lift(key.a, 0), b = mesh.lift(key.b, key.exponent);
+    sources.push_back({{a, b, b}, distance(a, b)});
+  });
   sizes_.emplace_back(std::make_shared<const SizeField>(sources, options.gradation, mesh.fold()),
                       centre, half);
 }

@@ -86,6 +86,30 @@ constexpr double kSquareRound = 2;
 // Of its longest side: no triangle counts as flatter.
 constexpr double kLeastHeight = 1e-4;
 
+// Moves the surface into the local frame.  Returns the noise of its coordinates.
+double move_to_frame(IndexedSurface& surface, const Symmetry& symmetry) {
+  double largest = 0;
+  for (Point3& p : surface.points) {
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    p = symmetry.frame.to_local(p);
+  }
+  return std::max(kSinglePrecision * largest, kLeastNoiseRel * symmetry.diameter);
+}
+
+GroupingOptions grouping_of(const Symmetry& symmetry,
+                            double tolerance,
+                            double noise,
+                            const MeshOptions& options) {
+  GroupingOptions how;
+  how.feature_angle_deg = options.feature_angle_deg;
+  how.fold = symmetry.fold;
+  how.frame = symmetry.frame;
+  how.reach = kMatchTolerances * tolerance;
+  how.noise = noise;
+  how.sector = options.sector;
+  return how;
+}
+
 IndexedSurface restored_sector(const QuotientSurface& s) {
   const RotationTable rotations(s.fold);
   IndexedSurface flat;
@@ -201,13 +225,8 @@ SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean, Symmetry symmetry, 
       volume_(clean.volume),
       area_(clean.area),
       full_(std::move(clean.surface)) {
-  double largest = 0;
-  for (Point3& p : full_.points) {
-    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    p = symmetry_.frame.to_local(p);
-  }
+  noise_ = move_to_frame(full_, symmetry_);
   topology_ = topology_of(full_);
-  noise_ = std::max(kSinglePrecision * largest, kLeastNoiseRel * symmetry_.diameter);
   tree_ = TriangleTree(full_.points, full_.triangles);
   samples_ = samples_of(full_);
   choose_candidates();
@@ -465,19 +484,13 @@ std::unique_ptr<CurvedBoundary> SurfaceSectorSource::curved_boundary(
   if (groups_.piece_fits.empty() || !curves(options)) return nullptr;
   const CurvingBounds bounds{allowed_,           options.radius_edge, options.max_edge,
                              options.max_volume, sizes_.get(),        is_cad_};
-  return std::make_unique<CurvedBoundary>(groups_, full_, tree_, cell, bounds);
+  return std::make_unique<CurvedBoundary>(groups_, tree_, cell, bounds);
 }
 
 Result<void> SurfaceSectorSource::find_groups(const TriangleSurface& given,
                                               const MeshOptions& options,
                                               ExecutionContext& context) {
-  GroupingOptions how;
-  how.feature_angle_deg = options.feature_angle_deg;
-  how.fold = symmetry_.fold;
-  how.frame = symmetry_.frame;
-  how.reach = kMatchTolerances * tolerance_;
-  how.noise = noise_;
-  how.sector = options.sector;
+  GroupingOptions how = grouping_of(symmetry_, tolerance_, noise_, options);
   is_cad_ = given.cad_notes.has_value();
   how.pieces = curves(options);
   how.farthest = allowed_;
@@ -487,21 +500,37 @@ Result<void> SurfaceSectorSource::find_groups(const TriangleSurface& given,
   return {};
 }
 
+Result<std::vector<FaceGroup>> groups_of_surface(IndexedSurface surface,
+                                                 const Symmetry& symmetry,
+                                                 double tolerance,
+                                                 const TriangleSurface& given,
+                                                 const MeshOptions& options,
+                                                 ExecutionContext& context) {
+  const double noise = move_to_frame(surface, symmetry);
+  const TriangleTree tree(surface.points, surface.triangles);
+  auto found = find_face_groups(surface, tree, given,
+                                grouping_of(symmetry, tolerance, noise, options), context);
+  if (!found) return error_of(found);
+  return std::move(found->groups);
+}
+
 Result<void> SurfaceSectorSource::find_sizes(const TriangleSurface& given,
                                              const MeshOptions& options,
                                              ExecutionContext& context) {
-  SizedModel model{full_, groups_.of_triangle, {}, given.vertices, symmetry_.frame};
+  SizedModel model{full_, groups_.of_triangle, {}, {}, given.vertices, symmetry_.frame};
   for (const FaceGroup& g : groups_.groups) model.names.push_back({g.marker, g.name});
-  auto sources = size_sources(model, options);
-  if (!sources) return error_of(sources);
-  size_sources_ = std::move(*sources);
+  auto asked = size_sources(model, options);
+  if (!asked) return error_of(asked);
+  size_sources_ = std::move(asked->sources);
+  symmetry_.warnings.insert(symmetry_.warnings.end(), asked->warnings.begin(),
+                            asked->warnings.end());
   const auto add = [this](const std::vector<SizeSource>& more) {
     size_sources_.insert(size_sources_.end(), more.begin(), more.end());
   };
   if (options.chord_error_given) add(curvature_sources(full_, groups_, options.chord_error_rel));
   if (options.preset != Preset::kNone) {
     // All copies: another fold may be taken.
-    const auto walls = wall_sizes(full_, 1, elements_across(options.preset), false, context);
+    const auto walls = wall_sizes(full_, tree_, elements_across(options.preset), false, context);
     if (!walls) return error_of(walls);
     add(*walls);
   }

@@ -64,12 +64,11 @@ class SurfaceSectorSource final : public SectorSource {
                                          const MeshOptions& options,
                                          ExecutionContext& context);
   // What the options ask for of sizes, and the presets. After the groups.
-  // Errors: kBadOption (unknown groups), limits.
+  // Errors: kBadOption (unknown groups, regions), limits.
   [[nodiscard]] Result<void> find_sizes(const TriangleSurface& given,
                                         const MeshOptions& options,
                                         ExecutionContext& context);
   [[nodiscard]] std::shared_ptr<const SizeField> size_field() const override { return sizes_; }
-  [[nodiscard]] const FaceGroups& groups() const { return groups_; }
 
  private:
   struct Candidate {
@@ -122,5 +121,14 @@ class SurfaceSectorSource final : public SectorSource {
   std::vector<Candidate> candidates_;
   std::int32_t preferred_ = 0;  // of them: with the whole tolerance
 };
+
+// The groups alone, which are listed without a mesh.  `surface`: cleaned, without problem, input
+// coordinates.  `given`: the model as read.  Errors: limits.
+[[nodiscard]] Result<std::vector<FaceGroup>> groups_of_surface(IndexedSurface surface,
+                                                               const Symmetry& symmetry,
+                                                               double tolerance,
+                                                               const TriangleSurface& given,
+                                                               const MeshOptions& options,
+                                                               ExecutionContext& context);
 
 }  // namespace symcell::solid

@@ -1,13 +1,14 @@
 // `symmetrise_plc`: a validated PLC, its symmetry, and the sectors cut from it.
 #include <cmath>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/base/assert.hpp"
-#include "core/geometry/rotation.hpp"
+#include "core/geometry/triangle_tree.hpp"
 #include "core/solid/plc/validate_plc.hpp"
 #include "core/solid/sector/plc_sector.hpp"
 #include "core/solid/sector/symmetrise.hpp"
@@ -81,18 +82,20 @@ class PlcSource final : public SectorSource {
   [[nodiscard]] std::shared_ptr<const SizeField> size_field() const override { return sizes_; }
 
   // What the options ask for of sizes, and the presets.  `vertices`: as given.
-  // Errors: kBadOption (a marker that no facet has); those of cutting a sector; limits.
+  // Errors: kBadOption (a marker or region that there is none of), limits.
   Result<void> find_sizes(std::span<const Point3> vertices, ExecutionContext& context) {
     if (options_.sizes.empty() && options_.preset == Preset::kNone) return {};
-    const auto cut = sector(0, context);
-    if (!cut) return error_of(cut);
     std::vector<std::int32_t> markers;
-    const IndexedSurface whole = whole_of(*cut, markers);
-    auto sources = size_sources({whole, markers, {}, vertices, plc_.symmetry.frame}, options_);
-    if (!sources) return error_of(sources);
-    size_sources_ = std::move(*sources);
+    const IndexedSurface whole = facets_of(plc_.complex, markers);
+    auto asked =
+        size_sources({whole, markers, {}, attributes(), vertices, plc_.symmetry.frame}, options_);
+    if (!asked) return error_of(asked);
+    size_sources_ = std::move(asked->sources);
+    std::vector<Warning>& warnings = plc_.symmetry.warnings;
+    warnings.insert(warnings.end(), asked->warnings.begin(), asked->warnings.end());
     if (options_.preset != Preset::kNone) {
-      const auto walls = wall_sizes(whole, 1, elements_across(options_.preset), true, context);
+      const TriangleTree tree(whole.points, whole.triangles);
+      const auto walls = wall_sizes(whole, tree, elements_across(options_.preset), true, context);
       if (!walls) return error_of(walls);
       size_sources_.insert(size_sources_.end(), walls->begin(), walls->end());
     }
@@ -101,25 +104,27 @@ class PlcSource final : public SectorSource {
   }
 
  private:
-  // The facets of all copies, and their markers.
-  static IndexedSurface whole_of(const Sector& sector, std::vector<std::int32_t>& markers) {
-    const RotationTable rotations(sector.fold);
-    IndexedSurface whole;
-    for (std::int32_t k = 0; k < sector.fold; ++k) {
-      for (const SectorFace& f : sector.faces) {
-        Triangle t{};
-        for (std::size_t i = 0; i < 3; ++i) {
-          const OrbitVertex v = sector.vertices[static_cast<std::size_t>(f.v[i])];
-          t[i] = static_cast<std::int32_t>(whole.points.size());
-          whole.points.push_back(
-              rotations.rotate(sector.orbit_points[static_cast<std::size_t>(v.orbit)],
-                               rotations.reduce(v.exponent + k)));
-        }
-        whole.triangles.push_back(t);
-        markers.push_back(sector.facet_markers[static_cast<std::size_t>(f.facet)]);
-      }
+  // The triangles of all facets, and their markers.
+  static IndexedSurface facets_of(const PlcComplex& complex, std::vector<std::int32_t>& markers) {
+    IndexedSurface whole{complex.points, {}, {}};
+    for (const ComplexFacet& f : complex.facets) {
+      const auto& own = f.triangles.triangles;
+      whole.triangles.insert(whole.triangles.end(), own.begin(), own.end());
+      markers.resize(whole.triangles.size(), f.marker);
     }
     return whole;
+  }
+
+  // Of the material, ascending; 0 of what no seed is in.
+  [[nodiscard]] std::vector<std::int32_t> attributes() const {
+    std::set<std::int32_t> found;
+    for (const PlcCell& cell : valid_->cells.cells) {
+      if (!cell.meshed) continue;
+      found.insert(cell.region < 0
+                       ? 0
+                       : valid_->complex.regions[static_cast<std::size_t>(cell.region)].attribute);
+    }
+    return {found.begin(), found.end()};
   }
 
   void make_size_field() {
@@ -127,8 +132,10 @@ class PlcSource final : public SectorSource {
     const double gradation =
         std::isfinite(options_.gradation) ? options_.gradation : kStandardGradation;
     const std::int32_t fold = plc_.symmetry.fold;
-    sizes_ =
-        std::make_shared<const SizeField>(of_first_sector(size_sources_, fold), gradation, fold);
+    // Without markers in the symmetry they may differ between copies.
+    const auto sources =
+        options_.ignore_markers ? size_sources_ : of_first_sector(size_sources_, fold);
+    sizes_ = std::make_shared<const SizeField>(sources, gradation, fold);
   }
 
   std::vector<SizeSource> size_sources_;

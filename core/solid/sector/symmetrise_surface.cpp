@@ -101,9 +101,10 @@ Result<SolidInspection> inspect_surface(const TriangleSurface& surface,
   result.folds = found->folds;
   result.warnings.insert(result.warnings.begin(), symmetry.warnings.begin(),
                          symmetry.warnings.end());
-  SurfaceSectorSource source(std::move(*clean), symmetry, tolerance_rel * result.diameter);
-  SYMCELL_TRY(source.find_groups(surface, options, context));
-  result.groups = source.groups().groups;
+  auto groups = groups_of_surface(std::move(clean->surface), symmetry,
+                                  tolerance_rel * result.diameter, surface, options, context);
+  if (!groups) return error_of(groups);
+  result.groups = std::move(*groups);
   return result;
 }
 

@@ -35,6 +35,10 @@ std::size_t at(std::int32_t i) {
 
 }  // namespace
 
+double allowed_at(double size, double distance, double slope) {
+  return size + slope * std::max(0.0, distance - kPlateau * size);
+}
+
 SectorRange sectors_of(const SizeSource& source, std::int32_t fold) {
   // Sides that pass the axis so near, in radians short of half a turn, pass it on either side.
   constexpr double kHalfTurn = std::numbers::pi - 1e-6;
@@ -114,17 +118,13 @@ std::int32_t SizeField::build(std::int32_t first, std::int32_t last) {
   return id;
 }
 
-double SizeField::allowed(double size, double distance) const {
-  return size + slope_ * std::max(0.0, distance - kPlateau * size);
-}
-
 double SizeField::distance_to(std::int32_t source, Point3 p) const {
   const SizeSource& s = sources_[at(source)];
   return distance(p, closest_point(p, s.place[0], s.place[1], s.place[2]));
 }
 
 double SizeField::allowed_by(std::int32_t source, Point3 p) const {
-  return allowed(sources_[at(source)].size, distance_to(source, p));
+  return allowed_at(sources_[at(source)].size, distance_to(source, p), slope_);
 }
 
 double SizeField::bound_of(const Node& node, Point3 p, double farther) const {
@@ -134,7 +134,7 @@ double SizeField::bound_of(const Node& node, Point3 p, double farther) const {
   const double distance = std::sqrt(dx * dx + dy * dy + dz * dz) + farther;
   // A larger size has a wider plateau, but never allows less: of those in the node the least decides
   // as long as growth is no faster than two to one; beyond, only that no source allows less than it is.
-  return slope_ * kPlateau <= 1 ? allowed(node.least, distance) : node.least;
+  return slope_ * kPlateau <= 1 ? allowed_at(node.least, distance, slope_) : node.least;
 }
 
 void SizeField::look_at(std::int32_t id, Point3 p, double farther, double& best) const {
@@ -142,7 +142,8 @@ void SizeField::look_at(std::int32_t id, Point3 p, double farther, double& best)
   if (node.right == 0) {
     for (std::int32_t i = node.first; i < node.last; ++i) {
       const double size = sources_[at(i)].size;
-      if (size < best) best = std::min(best, allowed(size, distance_to(i, p) + farther));
+      if (size >= best) continue;
+      best = std::min(best, allowed_at(size, distance_to(i, p) + farther, slope_));
     }
     return;
   }
@@ -175,7 +176,8 @@ bool SizeField::list_within(
       continue;
     }
     for (std::int32_t i = node.first; i < node.last; ++i) {
-      if (allowed(sources_[at(i)].size, distance_to(i, c) - reach) < most) list.push_back(i);
+      if (allowed_at(sources_[at(i)].size, distance_to(i, c) - reach, slope_) < most)
+        list.push_back(i);
     }
     if (list.size() - before > limit) return false;
   }
@@ -187,8 +189,12 @@ Point3 SizeField::in_first_sector(Point3 p) const {
 }
 
 double SizeField::max_edge(Point3 p, double enough) const {
+  return nodes_.empty() ? enough : max_edge_there(in_first_sector(p), enough);
+}
+
+double SizeField::max_edge_there(Point3 p, double enough) const {
   double best = enough;
-  if (!nodes_.empty()) look_at(0, in_first_sector(p), 0, best);
+  if (!nodes_.empty()) look_at(0, p, 0, best);
   return best;
 }
 

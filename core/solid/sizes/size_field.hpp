@@ -22,6 +22,9 @@ struct SizeSource {
   double size = 0;                // input units
 };
 
+// What a source of that size allows at a distance.
+[[nodiscard]] double allowed_at(double size, double distance, double slope);
+
 // What a source reaches over about the axis, counted in sectors from the x axis; `first` may be below 0.
 // All of them if it meets the axis.
 struct SectorRange {
@@ -44,11 +47,12 @@ class SizeField {
   // where it is.
   [[nodiscard]] double max_edge(Point3 p, double enough) const;
   [[nodiscard]] double least() const { return nodes_.empty() ? kNone : nodes_.front().least; }
-  // Growth of what is allowed over a distance.
-  [[nodiscard]] double slope() const { return slope_; }
 
-  // For those who ask about all places within `reach` of c at once, in the first sector:
+  // For those who ask about many places, in the first sector:
   [[nodiscard]] Point3 in_first_sector(Point3 p) const;
+  // max_edge, of a p that is there.
+  [[nodiscard]] double max_edge_there(Point3 p, double enough) const;
+  // And of all places within `reach` of c at once.
   // No place there allows more, or less.
   [[nodiscard]] double most_within(Point3 c, double reach) const { return smallest(c, reach); }
   [[nodiscard]] double least_within(Point3 c, double reach) const { return smallest(c, -reach); }
@@ -75,7 +79,6 @@ class SizeField {
 
   [[nodiscard]] std::int32_t sector_of(Point3 p) const;
   std::int32_t build(std::int32_t first, std::int32_t last);
-  [[nodiscard]] double allowed(double size, double distance) const;
   [[nodiscard]] double distance_to(std::int32_t source, Point3 p) const;
   // No source of the node allows less at a place whose distance to it is `farther` than that of p.
   [[nodiscard]] double bound_of(const Node& node, Point3 p, double farther) const;

@@ -52,12 +52,12 @@ double SizeLookup::max_edge(Point3 p, double enough) {
   double half = half_;
   const bool inside =
       std::abs(q.x - c.x) <= half && std::abs(q.y - c.y) <= half && std::abs(q.z - c.z) <= half;
-  if (!inside) return field_->max_edge(p, enough);
+  if (!inside) return field_->max_edge_there(q, enough);
   for (std::size_t id = 0;;) {
     if (cubes_[id].state == State::kNew) explore(id, c, half);
     const Cube& cube = cubes_[id];
     if (cube.least >= enough) return enough;
-    if (cube.state == State::kCrowded) return field_->max_edge(q, enough);
+    if (cube.state == State::kCrowded) return field_->max_edge_there(q, enough);
     if (cube.state == State::kListed) {
       double best = std::min(enough, cube.most);
       for (std::size_t i = cube.first; i < cube.first + static_cast<std::size_t>(cube.count); ++i) {

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "core/model/describe.hpp"
 
@@ -27,50 +30,79 @@ std::string listed(const std::vector<MarkerName>& names) {
   return text + (names.size() > kMostListed ? ", ..." : "");
 }
 
+// As it is written in the option, but for the word before a group's name.
+std::string as_written(const SizeRequest& s) {
+  std::string subject;
+  switch (s.kind) {
+    case SizeRequest::Kind::kMarker: subject = "marker:" + std::to_string(s.id); break;
+    case SizeRequest::Kind::kVertex: subject = "vertex:" + std::to_string(s.id); break;
+    case SizeRequest::Kind::kRegion: subject = "region:" + std::to_string(s.id); break;
+    case SizeRequest::Kind::kGroup: subject = s.group; break;
+    case SizeRequest::Kind::kPoint:
+      subject = "point:" + describe_number(s.point.x) + "/" + describe_number(s.point.y) + "/" +
+                describe_number(s.point.z);
+      break;
+  }
+  return subject + "=" + describe_number(s.size);
+}
+
 class Sources {
  public:
-  Sources(const SizedModel& model, const MeshOptions& options) : model_(model), options_(options) {}
+  Sources(const SizedModel& model, const MeshOptions& options)
+      : model_(model), options_(options), box_(bounding_box(model.surface.points)) {}
 
-  Result<std::vector<SizeSource>> find() {
+  Result<AskedSizes> find() {
     for (const SizeRequest& s : options_.sizes) {
       switch (s.kind) {
-        case SizeRequest::Kind::kMarker: SYMCELL_TRY(add_marker(s.id, s.size)); break;
+        case SizeRequest::Kind::kMarker: SYMCELL_TRY(add_marker(s, s.id)); break;
         case SizeRequest::Kind::kGroup: SYMCELL_TRY(add_group(s)); break;
         case SizeRequest::Kind::kVertex: SYMCELL_TRY(add_vertex(s)); break;
-        case SizeRequest::Kind::kPoint: add_point(s.point, s.size); break;
-        case SizeRequest::Kind::kRegion: break;
+        case SizeRequest::Kind::kPoint: add_point(s, s.point); break;
+        case SizeRequest::Kind::kRegion: SYMCELL_TRY(check_region(s)); break;
       }
     }
-    return std::move(sources_);
+    if (!idle_.empty()) result_.warnings.push_back(sizes_without_effect_warning(idle_));
+    return std::move(result_);
   }
 
  private:
+  // What a size is asked for of: markers by their names are markers.
+  using Subject = std::tuple<SizeRequest::Kind, std::int64_t, double, double, double>;
+
   static Failure refuse(const std::string& what) {
     return fail(ErrorCode::kBadOption, "sizes: " + what, {}, "/options/sizes");
   }
 
-  Result<void> add_marker(std::int64_t marker, double size) {
-    const std::size_t before = sources_.size();
+  Result<void> add_marker(const SizeRequest& s, std::int64_t marker) {
+    const std::size_t before = result_.sources.size();
     for (std::size_t t = 0; t < model_.markers.size(); ++t) {
       if (model_.markers[t] != marker) continue;
       const Triangle& c = model_.surface.triangles[t];
-      sources_.push_back({{model_.surface.points[at(c[0])], model_.surface.points[at(c[1])],
-                           model_.surface.points[at(c[2])]},
-                          size});
+      result_.sources.push_back({{model_.surface.points[at(c[0])], model_.surface.points[at(c[1])],
+                                  model_.surface.points[at(c[2])]},
+                                 s.size});
     }
-    if (sources_.size() > before) return {};
-    return refuse("no facet has the marker " + std::to_string(marker) + known());
+    if (result_.sources.size() == before) {
+      return refuse("no facet has the marker " + std::to_string(marker) + known());
+    }
+    tell_if_idle(s, {SizeRequest::Kind::kMarker, marker, 0, 0, 0}, 0);
+    return {};
   }
 
   Result<void> add_group(const SizeRequest& s) {
     const auto name = std::find_if(model_.names.begin(), model_.names.end(),
                                    [&](const MarkerName& n) { return n.name == s.group; });
-    if (name != model_.names.end()) return add_marker(name->marker, s.size);
+    if (name != model_.names.end()) return add_marker(s, name->marker);
     return refuse("there is no group \"" + s.group + "\"" + known());
   }
 
   [[nodiscard]] std::string known() const {
-    if (!model_.names.empty()) return "; the groups are " + listed(model_.names);
+    if (!model_.names.empty()) {
+      const bool rest =
+          std::ranges::find(model_.names, kRestOfFaces, &MarkerName::name) != model_.names.end();
+      return "; the groups are " + listed(model_.names) +
+             (rest ? "; the smaller ones are in \"" + std::string(kRestOfFaces) + "\"" : "");
+    }
     const std::set<std::int32_t> markers(model_.markers.begin(), model_.markers.end());
     std::string text;
     for (const std::int32_t m : markers) {
@@ -79,23 +111,66 @@ class Sources {
     return text.empty() ? std::string("; the model has no groups") : text;
   }
 
+  Result<void> check_region(const SizeRequest& s) {
+    if (model_.regions.empty()) {
+      return refuse("there is no region " + std::to_string(s.id) +
+                    "; a surface has none, only complexes of facets (poly, JSON) do");
+    }
+    if (std::ranges::find(model_.regions, s.id) == model_.regions.end()) {
+      std::string text;
+      for (std::size_t i = 0; i < std::min(model_.regions.size(), kMostListed); ++i) {
+        text += (i == 0 ? "" : ", ") + std::to_string(model_.regions[i]);
+      }
+      return refuse("there is no region " + std::to_string(s.id) + "; the regions are " + text +
+                    (model_.regions.size() > kMostListed ? ", ..." : ""));
+    }
+    tell_if_idle(s, {s.kind, s.id, 0, 0, 0}, 0);
+    return {};
+  }
+
   Result<void> add_vertex(const SizeRequest& s) {
     if (s.id < 0 || s.id >= static_cast<std::int64_t>(model_.vertices.size())) {
       return refuse("there is no vertex " + std::to_string(s.id) + "; the model has " +
                     std::to_string(model_.vertices.size()) + ", counted from 0");
     }
-    add_point(model_.vertices[static_cast<std::size_t>(s.id)], s.size);
+    add_point(s, model_.vertices[static_cast<std::size_t>(s.id)]);
     return {};
   }
 
-  void add_point(Point3 p, double size) {
+  void add_point(const SizeRequest& s, Point3 p) {
     const Point3 local = model_.frame.to_local(p);
-    sources_.push_back({{local, local, local}, size});
+    result_.sources.push_back({{local, local, local}, s.size});
+    const Point3 nearest{std::clamp(local.x, box_.low.x, box_.high.x),
+                         std::clamp(local.y, box_.low.y, box_.high.y),
+                         std::clamp(local.z, box_.low.z, box_.high.z)};
+    tell_if_idle(s, {SizeRequest::Kind::kPoint, 0, local.x, local.y, local.z},
+                 distance(local, nearest));
+  }
+
+  // `away`: all of the model is at least as far.
+  void tell_if_idle(const SizeRequest& s, const Subject& subject, double away) {
+    const double most = std::min(box_.diagonal(), options_.max_edge);
+    const double slope =
+        (std::isfinite(options_.gradation) ? options_.gradation : kStandardGradation) - 1;
+    if (allowed_at(s.size, away, slope) >= most) {
+      idle_.push_back(as_written(s) + (away > 0 ? " is too far away" : " is too long"));
+      return;
+    }
+    const auto [other, fresh] = least_.try_emplace(subject, &s);
+    if (fresh) return;
+    const SizeRequest* shorter = other->second;
+    const SizeRequest* longer = &s;
+    if (longer->size < shorter->size) std::swap(shorter, longer);
+    other->second = shorter;
+    idle_.push_back(as_written(*longer) + " beside " + as_written(*shorter));
   }
 
   const SizedModel& model_;
   const MeshOptions& options_;
-  std::vector<SizeSource> sources_;
+  Box3 box_;
+  AskedSizes result_;
+  std::map<Subject, const SizeRequest*> least_;  // the shortest so far
+  std::vector<std::string> idle_;
 };
 
 // Longest chord whose middle is within that share of the radius from the arc.
@@ -143,7 +218,7 @@ double radius_at(const ShapeFit& fit, Point3 p) {
 
 }  // namespace
 
-Result<std::vector<SizeSource>> size_sources(const SizedModel& model, const MeshOptions& options) {
+Result<AskedSizes> size_sources(const SizedModel& model, const MeshOptions& options) {
   return Sources(model, options).find();
 }
 

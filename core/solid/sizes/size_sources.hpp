@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/cell/warning.hpp"
 #include "core/geometry/axis_frame.hpp"
 #include "core/geometry/indexed_surface.hpp"
 #include "core/model/mesh_options.hpp"
@@ -19,14 +20,19 @@ struct SizedModel {
   const IndexedSurface& surface;          // local frame, all copies
   std::span<const std::int32_t> markers;  // per triangle
   std::vector<MarkerName> names;          // of markers
-  std::span<const Point3> vertices;       // as given
+  std::vector<std::int32_t> regions;  // attributes of the material, each once; none: it has none
+  std::span<const Point3> vertices;   // as given
   AxisFrame frame;
 };
 
+struct AskedSizes {
+  std::vector<SizeSource> sources;
+  std::vector<Warning> warnings;  // of sizes that can change nothing
+};
+
 // Of markers, groups, vertices and points. Regions have bounds without places (Criteria).
-// Errors: kBadOption (a marker or group that no facet has, a vertex that is none).
-[[nodiscard]] Result<std::vector<SizeSource>> size_sources(const SizedModel& model,
-                                                           const MeshOptions& options);
+// Errors: kBadOption (a marker or group that no facet has, a vertex or region that is none).
+[[nodiscard]] Result<AskedSizes> size_sources(const SizedModel& model, const MeshOptions& options);
 
 // Of sources that cover a face in all copies those that meet the first sector, and all points, which are
 // in one copy.

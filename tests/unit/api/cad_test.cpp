@@ -190,6 +190,21 @@ TEST_F(Cad, NamesAndColoursOfFaces) {
   EXPECT_EQ(colours["plane_1"], "");
 }
 
+// What is on both solids, four pieces, is named as the first one's faces are, every time.
+TEST_F(Cad, NamesOfFacesInOnePlaneAreThoseOfTheFirstSolid) {
+  const TriangleSurface surface = read("named_overlap.step");
+  std::map<std::string, double> areas;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto [a, b, c] = surface.triangles[t];
+    const auto at = [&](std::int32_t i) { return surface.vertices[static_cast<std::size_t>(i)]; };
+    const std::string& name = surface.cad_faces[static_cast<std::size_t>(surface.cad_face[t])].name;
+    areas[name.substr(0, name.find(' '))] += length(cross(at(b) - at(a), at(c) - at(a))) / 2;
+  }
+  EXPECT_NEAR(areas["first"], 20 * (2 * 20 + 2 * 10) + 20 * 10, 1e-9);
+  EXPECT_NEAR(areas["second"], 10 * (2 * 20 + 2 * 10) + 20 * 10, 1e-9);
+  EXPECT_EQ(areas.size(), 2U);
+}
+
 TEST_F(Cad, OtherUnitsAreConvertedAndTold) {
   const Json document = inspected("inch_plate.step");
   EXPECT_TRUE(warnings_of(document).contains("units_converted")) << document["warnings"];

@@ -136,6 +136,11 @@ TEST(CellInput, CellsWhoseCopiesDoNotFitAreRefused) {
   };
   refused("/fold", 6, "cell.pairs");
   refused("/fold", 5.5, "no integer");
+  refused("/fold", 30001, "30000");
+  // Numbers that would be others in 32 bits.
+  refused("/fold", 4294967301, "fold");
+  refused("/elements/0/0", 4294967296 + good["elements"][0][0].get<std::int64_t>(), "another type");
+  refused("/lower/0", 4294967296 + good["lower"][0].get<std::int64_t>(), "another type");
   refused("/dimension", 4, "dimension");
   refused("/axis/direction", {0, 0, 0}, "axis");
   refused("/axis/direction", {0, 1, 0}, "cell.pairs");

@@ -130,5 +130,39 @@ TEST(NodalResults, FrdPairsRealAndImaginaryParts) {
   EXPECT_EQ(read_frd("", 2).error().code, ErrorCode::kSyntax);
 }
 
+TEST(NodalResults, FrdWithOtherNodesOrNumbersIsRefused) {
+  const auto refused = [](const std::string& nodes, const char* why) {
+    const auto results = read_frd(
+        " -4  DISP        4    1\n -5  D1\n -5  D2\n -5  D3\n -5  ALL\n" + nodes + " -3\n", 2);
+    ASSERT_FALSE(results) << nodes;
+    EXPECT_NE(results.error().message.find(why), std::string::npos) << results.error().message;
+    EXPECT_NE(results.error().message.find("line "), std::string::npos) << results.error().message;
+  };
+  const std::string first = " -1         1 1.00000E+00-2.00000E+00 3.00000E-01\n";
+  // As many as there are, but one of them twice.
+  refused(first + first, "node 1 stands here for the second time");
+  refused(first, "DISP has 1 nodes");
+  refused(first + " -1         2         NaN 2.50000E+00 4.00000E+02\n", "node 2");
+  refused(first + " -1         2 1.00000E+00    Infinity 4.00000E+02\n", "node 2");
+  refused(first + " -1         2 1.00000E+00-2.00000E+00        -inf\n", "node 2");
+}
+
+TEST(NodalResults, VtuWithNumbersThatAreNoneIsRefused) {
+  const auto file = [](const std::string& numbers) {
+    return "<?xml version=\"1.0\"?><VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+           "byte_order=\"LittleEndian\"><UnstructuredGrid><Piece NumberOfPoints=\"2\" "
+           "NumberOfCells=\"0\"><PointData><DataArray type=\"Float64\" Name=\"U\" "
+           "NumberOfComponents=\"3\" format=\"ascii\">" +
+           numbers + "</DataArray></PointData></Piece></UnstructuredGrid></VTKFile>";
+  };
+  ASSERT_TRUE(read_vtu_result(file("1 2 3 4 5 6"), 2, "U", ""));
+  for (const char* numbers : {"1 2 3 4 nan 6", "1 2 3 4 5 inf", "1 2 3 -inf 5 6"}) {
+    const auto result = read_vtu_result(file(numbers), 2, "U", "");
+    ASSERT_FALSE(result) << numbers;
+    EXPECT_EQ(result.error().code, ErrorCode::kNonFinite) << result.error().message;
+    EXPECT_NE(result.error().message.find("node 1"), std::string::npos) << result.error().message;
+  }
+}
+
 }  // namespace
 }  // namespace symcell

@@ -121,6 +121,10 @@ TEST(Options, SizesOfSolids) {
   }
   EXPECT_EQ(code_of(options_for(kPlanar, *options)), ErrorCode::kBadOption);
   EXPECT_TRUE(options_for(kPlanar, *from_text("sizes", "layer 1=0.2,vertex:3=1")));
+  // What cannot be named so is told how.
+  const auto comma = from_text("sizes", "seat, upper=0.2");
+  ASSERT_FALSE(comma);
+  EXPECT_NE(comma.error().message.find("marker:N"), std::string::npos) << comma.error().message;
   for (const char* bad : {"point:1/2=3", "point:1/2/3/4=3", "point:a/2/3=3", "region:x=1", "=1",
                           "group:=1", "bore", "bore=0", "bore=-1", "bore=nan"}) {
     EXPECT_EQ(code_of(from_text("sizes", bad)), ErrorCode::kBadOption) << bad;

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
+#include <vector>
+
+#include "core/base/random.hpp"
 
 namespace symcell {
 namespace {
@@ -25,6 +29,41 @@ TEST(ClosestPoint, InThinTriangles) {
       } while (std::next_permutation(order.begin(), order.end()));
     }
   }
+}
+
+// Among many triangles the ray meets what it meets of each alone.
+TEST(TriangleTree, RaysMeetTheFirstTriangle) {
+  Random random(9);
+  const auto point = [&](double size) {
+    return Point3{size * (random.uniform() - 0.5), size * (random.uniform() - 0.5),
+                  size * (random.uniform() - 0.5)};
+  };
+  std::vector<Point3> points;
+  std::vector<Triangle> triangles;
+  for (std::int32_t t = 0; t < 200; ++t) {
+    const Point3 middle = point(10);
+    for (int i = 0; i < 3; ++i) points.push_back(middle + point(2));
+    triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  const TriangleTree all(points, triangles);
+  std::vector<TriangleTree> alone;
+  for (const Triangle& t : triangles) alone.emplace_back(points, std::span(&t, 1));
+  int met = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Point3 from = point(12), to = point(8);
+    // Some run along an axis, in which boxes have sides.
+    const Point3 direction = i % 4 == 0 ? Point3{0, 0, 1} : (1 / distance(from, to)) * (to - from);
+    TriangleTree::Meeting wanted;
+    for (std::size_t t = 0; t < alone.size(); ++t) {
+      const TriangleTree::Meeting one = alone[t].first_met(from, direction);
+      if (one.distance < wanted.distance) wanted = {static_cast<std::int32_t>(t), one.distance};
+    }
+    const TriangleTree::Meeting found = all.first_met(from, direction);
+    EXPECT_EQ(found.triangle, wanted.triangle);
+    EXPECT_EQ(found.distance, wanted.distance);
+    met += found.triangle >= 0 ? 1 : 0;
+  }
+  EXPECT_GT(met, 100);
 }
 
 }  // namespace

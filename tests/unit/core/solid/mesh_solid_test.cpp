@@ -458,5 +458,98 @@ TEST(MeshSolid, MeshesItsOwnBoundaryAgain) {
   EXPECT_LT(again_all, once_all);
 }
 
+// A source that finds every boundary too far away once nodes were asked to go to their faces.
+class RefusesMoves final : public SectorSource {
+ public:
+  explicit RefusesMoves(const SectorSource& source) : source_(source) {}
+
+  [[nodiscard]] const Symmetry& symmetry() const override { return source_.symmetry(); }
+  [[nodiscard]] const std::vector<std::string>& repairs() const override {
+    return source_.repairs();
+  }
+  [[nodiscard]] std::int32_t candidates() const override { return source_.candidates(); }
+  [[nodiscard]] Result<Sector> sector(std::int32_t index,
+                                      ExecutionContext& context) const override {
+    return source_.sector(index, context);
+  }
+  [[nodiscard]] Result<std::unique_ptr<SectorSource>> with_fold(
+      std::int32_t fold, ExecutionContext& context) const override {
+    return source_.with_fold(fold, context);
+  }
+  [[nodiscard]] Result<void> check_boundary(const SymmetryCellMesh& cell,
+                                            ExecutionContext& context) const override {
+    if (moved_) return fail(ErrorCode::kInternal, "too far");
+    return source_.check_boundary(cell, context);
+  }
+  [[nodiscard]] std::unique_ptr<CurvedBoundary> curved_boundary(
+      const SymmetryCellMesh& cell, const MeshOptions& options) const override {
+    moved_ = true;
+    return source_.curved_boundary(cell, options);
+  }
+  [[nodiscard]] Result<void> label_boundary(SymmetryCellMesh& cell,
+                                            ExecutionContext& context) const override {
+    return source_.label_boundary(cell, context);
+  }
+
+ private:
+  const SectorSource& source_;
+  mutable bool moved_ = false;
+};
+
+// A ring with the cylinders that a CAD file would say it has, which its chords' middles are beside.
+TriangleSurface cad_ring() {
+  TriangleSurface ring = ring_surface(48, 4, 2, 3);
+  const auto face = [&](FaceKind kind, double radius, double z) {
+    AnalyticSurface s;
+    s.kind = kind;
+    s.origin = {0, 0, z};
+    s.direction = {0, 0, 1};
+    s.radius = radius;
+    ring.cad_faces.push_back({s, "", -1});
+  };
+  face(FaceKind::kCylinder, 4, 0);
+  face(FaceKind::kCylinder, 2, 0);
+  face(FaceKind::kPlane, 0, 3);
+  face(FaceKind::kPlane, 0, 0);
+  // Two triangles of each a side, in that order.
+  for (std::size_t t = 0; t < ring.triangles.size(); ++t) {
+    ring.cad_face.push_back(static_cast<std::int32_t>(t / 2 % 4));
+  }
+  ring.cad_notes.emplace();
+  return ring;
+}
+
+TEST(MeshSolid, TellsOfMovesOntoFacesThatWereRefused) {
+  for (const std::int32_t order : {1, 2}) {
+    MeshOptions options;
+    options.fold = 8;
+    options.axis_origin = Point3{0, 0, 0};
+    options.axis_direction = Point3{0, 0, 1};
+    options.order = order;
+    options.max_edge = 1.2;
+    ExecutionContext context;
+    const auto source = symmetrise_surface(cad_ring(), options, context);
+    ASSERT_TRUE(source) << source.error().message;
+    const auto told = [](const MeshOutcome& outcome) {
+      return std::ranges::any_of(outcome.statistics.warnings, [](const Warning& w) {
+        return w.code == WarningCode::kFacesAsChords &&
+               w.text.find("vertices lie beside") != std::string::npos;
+      });
+    };
+    Tuning tuning;
+    tuning.starts.meshes_again = 0;
+    const auto moved = mesh_solid(**source, options, context, tuning);
+    ASSERT_TRUE(moved) << moved.error().message;
+    const RefusesMoves refusing(**source);
+    const auto left = mesh_solid(refusing, options, context, tuning);
+    ASSERT_TRUE(left) << left.error().message;
+    ASSERT_TRUE(moved->statistics.curving && left->statistics.curving);
+    EXPECT_GT(moved->statistics.curving->vertices, 0U);
+    EXPECT_EQ(left->statistics.curving->vertices, 0U);
+    EXPECT_GE(left->statistics.curving->left, moved->statistics.curving->vertices);
+    EXPECT_TRUE(told(*left)) << order;
+  }
+}
+
 }  // namespace
 }  // namespace symcell::solid

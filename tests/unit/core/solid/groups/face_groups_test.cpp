@@ -156,6 +156,18 @@ TEST(ShapeFit, PointsGoToTheNearestOfTheSurface) {
   EXPECT_LT(distance(project_onto(cylinder, {1, 0, 7}), {3, 0, 7}), 1e-12);
 }
 
+// A bore whose ends are chamfered by less than the feature angle: four places always lie on a circle.
+TEST(ShapeFit, AChamferedBoreIsNoTorus) {
+  const std::array<Point2, 4> profile{{{2.06, 0}, {2, 0.2}, {2, 1.8}, {2.06, 2}}};
+  const auto bore = [&](double t) { return profile[static_cast<std::size_t>(std::lround(3 * t))]; };
+  const IndexedSurface s = turned(bore, 36, 3, 2 * kPi, true);
+  EXPECT_EQ(fit_shape(s, all_of(s), 1e-6).kind, FaceKind::kSurface);
+  // Nor is one whose wall bends no more than its vertices may be off.
+  const auto barrel = [](double t) { return Point2{2 + 0.004 * std::sin(kPi * t), 2 * t}; };
+  const IndexedSurface bent = turned(barrel, 36, 6, 2 * kPi, true);
+  EXPECT_NE(fit_shape(bent, all_of(bent), 1e-6).kind, FaceKind::kTorus);
+}
+
 Inspection inspected(const TriangleSurface& surface, const MeshOptions& options) {
   ExecutionContext context;
   auto found = inspect_model(surface, options, context);
@@ -332,6 +344,97 @@ TEST(FaceGroups, NamesAndAnAngleDivideTogether) {
   EXPECT_TRUE(groups.contains("door"));
   EXPECT_FALSE(groups.contains("walls"));
   EXPECT_TRUE(groups.contains("walls_plane_1"));
+}
+
+// A gear with teeth of three chords at the tip and at the root, filled to the axis.
+TriangleSurface gear(int teeth, double tip, double root) {
+  TriangleSurface s;
+  s.vertices = {{0, 0, 0}, {0, 0, 2}};
+  std::vector<Point2> outline;
+  for (int i = 0; i < teeth; ++i) {
+    for (int j = 0; j < 8; ++j) {
+      const double r = j < 4 ? tip : root, phi = 2 * kPi * (i + j / 8.0) / teeth;
+      outline.push_back({r * std::cos(phi), r * std::sin(phi)});
+    }
+  }
+  const auto n = static_cast<std::int32_t>(outline.size());
+  for (const double z : {0.0, 2.0}) {
+    for (const Point2& p : outline) s.vertices.push_back({p.x, p.y, z});
+  }
+  for (std::int32_t i = 0; i < n; ++i) {
+    const std::int32_t a = 2 + i, b = 2 + (i + 1) % n;
+    s.triangles.push_back({0, b, a});
+    s.triangles.push_back({1, a + n, b + n});
+    s.triangles.push_back({a, b, b + n});
+    s.triangles.push_back({a, b + n, a + n});
+  }
+  return s;
+}
+
+TEST(FaceGroups, ToothTipsAreTheRimTogether) {
+  const auto groups = groups_of(gear(12, 5, 4), with_fold(12));
+  ASSERT_TRUE(groups.contains("rim"));
+  EXPECT_EQ(groups.at("rim").faces, 12);
+  EXPECT_NEAR(*groups.at("rim").radius, 5, 1e-9);
+  ASSERT_TRUE(groups.contains("cylinder_r4_1"));
+  EXPECT_EQ(groups.at("cylinder_r4_1").faces, 12);
+}
+
+// Of the names a file gives more than can be groups, the largest parts are.
+TEST(FaceGroups, TheLargestOfManyNamesAreGroups) {
+  TriangleSurface ring = ring_surface(500, 4, 2, 3);
+  for (std::size_t t = 0; t < ring.triangles.size(); ++t) {
+    // The first two of eight triangles a side are outside, as ring_surface has them.
+    const auto side = static_cast<std::int32_t>(t / 8);
+    ring.groups.push_back(t % 8 < 2 ? side : 500);
+  }
+  for (int side = 0; side < 500; ++side) ring.group_names.push_back("side " + std::to_string(side));
+  ring.group_names.push_back("body");
+  const auto groups = groups_of(ring, with_fold(1));
+  EXPECT_EQ(groups.size(), 400U);
+  EXPECT_TRUE(groups.contains("body"));
+  ASSERT_TRUE(groups.contains("rest"));
+  MeshOptions options = with_fold(1);
+  options.sizes = {{SizeRequest::Kind::kGroup, 0, 0.5, "no part"}};
+  ExecutionContext context;
+  const auto refused = mesh_model(ring, options, context);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("smaller ones are in \"rest\""), std::string::npos)
+      << refused.error().message;
+}
+
+// Nodes on the axis, at the apex of a cone, have a place on it.
+TEST(FaceGroups, AConeIsCurvedUpToItsApex) {
+  TriangleSurface cone;
+  const int sides = 48, rows = 3;
+  const auto add = [&](double r, double z) {
+    for (int i = 0; i < sides; ++i) {
+      const double phi = 2 * kPi * i / sides;
+      cone.vertices.push_back({r * std::cos(phi), r * std::sin(phi), z});
+    }
+  };
+  cone.vertices = {{0, 0, 0}, {0, 0, 3}};
+  for (int j = 0; j < rows; ++j) add(2 - 0.6 * j, 0.9 * j);
+  const auto id = [&](int i, int j) { return 2 + j * sides + i % sides; };
+  for (int i = 0; i < sides; ++i) {
+    cone.triangles.push_back({0, id(i + 1, 0), id(i, 0)});
+    cone.triangles.push_back({1, id(i, rows - 1), id(i + 1, rows - 1)});
+    for (int j = 0; j + 1 < rows; ++j) {
+      cone.triangles.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
+      cone.triangles.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
+    }
+  }
+  MeshOptions options = with_fold(8);
+  options.order = 2;
+  options.curved = true;
+  options.max_edge = 1;
+  ExecutionContext context;
+  const auto outcome = mesh_model(cone, options, context);
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  ASSERT_TRUE(outcome->statistics.curving);
+  EXPECT_EQ(outcome->statistics.curving->faces, 2U);
+  EXPECT_EQ(outcome->statistics.curving->other_faces, 0U);
+  EXPECT_NEAR(outcome->statistics.cell.measure * 8, kPi * 4 * 3 / 3, 1e-3 * kPi * 4);
 }
 
 }  // namespace

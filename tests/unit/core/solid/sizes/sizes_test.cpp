@@ -239,6 +239,65 @@ TEST(Sizes, OfMarkersOfAPlc) {
   EXPECT_NE(refused.error().message.find("7"), std::string::npos);
 }
 
+TEST(Sizes, UnknownRegionsAreRefused) {
+  Plc box = test::box({-1, -1, 0}, {1, 1, 2});
+  const auto refusal = [](const Model& model, std::int64_t region) {
+    MeshOptions options = with_fold(4);
+    options.sizes = {{SizeRequest::Kind::kRegion, region, 0.5}};
+    ExecutionContext context;
+    const auto outcome = mesh_model(model, options, context);
+    if (outcome) return std::string();
+    EXPECT_EQ(outcome.error().code, ErrorCode::kBadOption);
+    return outcome.error().message;
+  };
+  EXPECT_EQ(refusal(box, 0), "");
+  EXPECT_NE(refusal(box, 3).find("region 3"), std::string::npos);
+  box.regions.push_back({{0, 0, 1}, 5, kInfinity});
+  EXPECT_EQ(refusal(box, 5), "");
+  const std::string message = refusal(box, 3);
+  EXPECT_NE(message.find("region 3"), std::string::npos) << message;
+  EXPECT_NE(message.find("the regions are 5"), std::string::npos) << message;
+  // All of it has an attribute.
+  EXPECT_NE(refusal(box, 0), "");
+  const std::string of_surface = refusal(ring_surface(48, 6, 2, 3), 0);
+  EXPECT_NE(of_surface.find("region 0"), std::string::npos) << of_surface;
+}
+
+// Where markers are not part of the symmetry those of every copy may be named.
+TEST(Sizes, OfMarkersThatDifferBetweenCopies) {
+  Plc box = test::box({-1, -1, 0}, {1, 1, 2});
+  std::int32_t next = 1;
+  for (PlcFacet& f : box.facets) f.marker = next++;
+  MeshOptions options = with_fold(4);
+  options.ignore_markers = true;
+  const std::size_t coarse = meshed(box, options).tets.size();
+  for (std::int32_t marker = 1; marker < next; ++marker) {
+    options.sizes = {{SizeRequest::Kind::kMarker, marker, 0.4}};
+    EXPECT_GT(meshed(box, options).tets.size(), 2 * coarse) << marker;
+  }
+}
+
+TEST(Sizes, WhatHasNoEffectIsTold) {
+  const TriangleSurface ring = ring_surface(48, 6, 2, 3);
+  const auto told = [&](const std::vector<SizeRequest>& sizes) {
+    MeshOptions options = with_fold(8);
+    options.sizes = sizes;
+    std::string text;
+    for (const Warning& w : meshed(ring, options).statistics.warnings) {
+      if (w.code == WarningCode::kSizesWithoutEffect) text += w.text;
+    }
+    return text;
+  };
+  using Kind = SizeRequest::Kind;
+  EXPECT_EQ(told({{Kind::kGroup, 0, 0.8, "bore"}, {Kind::kPoint, 0, 0.5, "", {4, 0, 1}}}), "");
+  EXPECT_NE(told({{Kind::kPoint, 0, 0.5, "", {400, 0, 1}}}).find("point:400/0/1=0.5"),
+            std::string::npos);
+  // Beside the part, but near enough.
+  EXPECT_EQ(told({{Kind::kPoint, 0, 0.5, "", {7, 0, 1}}}), "");
+  const std::string twice = told({{Kind::kGroup, 0, 0.8, "bore"}, {Kind::kGroup, 0, 1.2, "bore"}});
+  EXPECT_NE(twice.find("bore=1.2 beside bore=0.8"), std::string::npos) << twice;
+}
+
 TEST(Sizes, UnknownGroupsAreRefusedWithThoseThatThereAre) {
   MeshOptions options = with_fold(8);
   options.sizes = {{SizeRequest::Kind::kGroup, 0, 0.3, "boar"}};
@@ -277,7 +336,8 @@ TEST(Sizes, WallsAreSeenThroughTheMaterial) {
   const TriangleSurface box = box_surface({-2, -2, 0}, {2, 2, 0.5});
   IndexedSurface surface{box.vertices, box.triangles, {}};
   ExecutionContext context;
-  const auto walls = solid::wall_sizes(surface, 1, 1, false, context);
+  const TriangleTree tree(surface.points, surface.triangles);
+  const auto walls = solid::wall_sizes(surface, tree, 1, false, context);
   ASSERT_TRUE(walls);
   for (const SizeSource& w : *walls) {
     const bool flat = std::abs(w.place[0].z - w.place[1].z) < 1e-9 &&
