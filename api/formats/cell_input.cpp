@@ -13,6 +13,7 @@
 #include "api/formats/cell_archive.hpp"
 #include "api/formats/gzip.hpp"
 #include "api/formats/vtu_reader.hpp"
+#include "core/base/index.hpp"
 #include "core/geometry/axis_frame.hpp"
 #include "core/model/mesh_options.hpp"
 #include "core/verify/support.hpp"
@@ -27,10 +28,6 @@ constexpr std::size_t kMaxMeshBytes = std::size_t{16} << 30U;
 constexpr std::string_view kArchive = "SYMCELL";
 constexpr double kMostCoordinate = 1e60;   // as for the vertices of a model
 constexpr double kLeastDirection = 1e-60;  // likewise
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Failure misfit(const std::string& what) {
   return fail(ErrorCode::kSyntax, "this is no symmetry cell: " + what);

@@ -8,14 +8,11 @@
 
 #include "api/formats/mesh_formats.hpp"
 #include "api/formats/vtu_reader.hpp"
+#include "core/base/index.hpp"
 #include "core/geometry/axis_frame.hpp"
 
 namespace symcell {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 bool is_finite(Point3 p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);

@@ -6,12 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "core/base/index.hpp"
+
 namespace symcell {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // `nodes`: those of one orbit, ascending.
 void pair_within(SymmetryCellMesh& cell, std::span<const std::int32_t> nodes) {

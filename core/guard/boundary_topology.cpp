@@ -5,12 +5,10 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/index.hpp"
+
 namespace symcell {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Classes of orbits (of vertices, of corners) that hang together, with the exponent of each
 // relative to its root: a loop that comes back at another exponent joins copies. A class of m

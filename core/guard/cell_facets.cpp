@@ -5,15 +5,12 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/base/mix.hpp"
 #include "core/base/union_find.hpp"
 
 namespace symcell::internal {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Facet i lies opposite corner i; its nodes run counter-clockwise seen from outside.
 constexpr std::int32_t kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/index.hpp"
 #include "core/geometry/rotation.hpp"
 #include "core/guard/cell_facets.hpp"
 
@@ -26,10 +27,6 @@ using internal::name_of;
 using internal::Nodes;
 using internal::number_of;
 using internal::sort_nodes;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Roundings of the difference of two nodes, of the largest coordinate: each is the sum of some
 // products of numbers no larger, rounded to 2^-53 of it.

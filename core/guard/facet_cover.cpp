@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/rotation.hpp"
 #include "core/geometry/tolerances.hpp"
 
@@ -19,10 +20,6 @@ namespace {
 // little.
 constexpr double kBendRel = 10 * kPlanarityToleranceRel;
 constexpr double kBendFactor = 10;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Failure broken(const std::string& what) {
   return fail(ErrorCode::kInternal, "mesh check 'facets': " + what);

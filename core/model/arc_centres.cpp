@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/index.hpp"
 #include "core/geometry/arc.hpp"
 #include "core/geometry/point_tree.hpp"
 #include "core/model/describe.hpp"
@@ -15,10 +16,6 @@ namespace {
 
 // Of the radius: what files with seven digits keep.
 constexpr double kSameRadius = 1e-6;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::vector<Point3> raised(const std::vector<Point2>& points) {
   std::vector<Point3> result;

@@ -4,15 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "core/base/index.hpp"
 #include "core/geometry/facet_triangulation.hpp"
 #include "core/geometry/predicates.hpp"
 
 namespace symcell {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Newell's: the sum over the polygon's edges; its length is twice the area.
 Point3 normal_of(std::span<const Point3> corners) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "core/base/index.hpp"
 #include "core/geometry/point_tree.hpp"
 #include "core/geometry/segment_index.hpp"
 #include "core/geometry/self_intersections.hpp"
@@ -22,10 +23,6 @@ namespace {
 constexpr double kNearMissRel = 1e-5;
 // Distances tried in turn at which vertices of a surface are one, as shares of the diameter.
 constexpr std::array<double, 5> kWeldRel{1e-8, 1e-7, 1e-6, 1e-5, 3e-5};
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Classes among the marked.
 std::size_t marked_classes(UnionFind& classes, const std::vector<char>& marked) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/index.hpp"
 #include "core/geometry/point_tree.hpp"
 #include "core/geometry/triangle_tree.hpp"
 #include "core/verify/against_model.hpp"
@@ -17,10 +18,6 @@ constexpr std::array<double, 5> kSegmentSamples{0.137, 0.381, 0.5, 0.618, 0.893}
 // per diameter, as far as nodes at its rim may be moved.
 constexpr double kAreaRel = 1e-8;
 constexpr double kAreaTolerances = 16;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 class PlcChecker {
  public:

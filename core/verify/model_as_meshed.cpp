@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/arc.hpp"
 #include "core/geometry/point_tree.hpp"
 #include "core/plane/input/arc_chains.hpp"
@@ -19,10 +20,6 @@ constexpr double kOnArcRel = kExactSymmetryToleranceRel;
 constexpr double kSameCircleRel = 1e-9;
 // Radians: a little more than the coarsest chord that can be asked for.
 constexpr double kCoarsest = 1.06;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 double diameter_of(const std::vector<Point2>& points) {
   Point2 low = points.front(), high = low;

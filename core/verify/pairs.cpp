@@ -3,15 +3,12 @@
 #include <array>
 #include <limits>
 
+#include "core/base/index.hpp"
 #include "core/geometry/point_tree.hpp"
 #include "core/verify/symmetry.hpp"
 
 namespace symcell::internal {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::string node_name(std::size_t node) {
   return "node " + std::to_string(node);

@@ -2,14 +2,11 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/index.hpp"
 #include "core/verify/symmetry.hpp"
 
 namespace symcell::internal {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 class CellInFull {
  public:

@@ -12,14 +12,11 @@
 #include <map>
 #include <numbers>
 
+#include "core/base/index.hpp"
 #include "core/verify/against_model.hpp"
 
 namespace symcell::internal {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // A triangle as seen along an edge, by its angle round it.
 struct Spoke {

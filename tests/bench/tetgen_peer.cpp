@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/rotation.hpp"
 #include "core/solid/initial/cut_section.hpp"
 #include "tests/bench/tetgen_run.hpp"
@@ -19,10 +20,6 @@ namespace {
 constexpr int kLowerMarker = 1'000'001;
 constexpr int kHigherMarker = 1'000'002;
 constexpr std::int32_t kMostRounds = 8;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // The wedge as triangles: faces of the sector, divided at the vertices that lie inside their edges
 // on the cut, the section on both cuts.

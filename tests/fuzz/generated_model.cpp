@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/index.hpp"
 #include "core/geometry/axis_frame.hpp"
 
 namespace symcell::fuzz {
@@ -17,10 +18,6 @@ namespace {
 
 constexpr std::int32_t kOutside = 0;  // the cell round all others
 constexpr std::array<double, 8> kSteps{1, 1, 0.5, 2, 0.25, 0.1, 1.5, 0.03};
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 struct Cell {
   std::int32_t value = 0;  // 0: void, else its region

@@ -6,12 +6,10 @@
 #include <set>
 #include <utility>
 
+#include "core/base/index.hpp"
+
 namespace symcell::test {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // A prism of the stack, or a place where none is.
 struct Slot {

@@ -5,14 +5,12 @@
 #include <set>
 #include <utility>
 
+#include "core/base/index.hpp"
+
 namespace symcell::test {
 namespace {
 
 constexpr std::int64_t kMany = 1'000'000;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 void find_neighbours(Sheet& sheet) {
   std::map<std::pair<std::int32_t, std::int32_t>, std::pair<std::int32_t, std::size_t>> first;

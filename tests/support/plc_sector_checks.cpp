@@ -9,14 +9,11 @@
 #include <set>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/rotation.hpp"
 
 namespace symcell::test {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 using Pair = std::array<std::int32_t, 2>;
 

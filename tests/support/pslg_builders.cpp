@@ -6,14 +6,12 @@
 #include <numeric>
 #include <random>
 
+#include "core/base/index.hpp"
+
 namespace symcell {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Point2 polar(double radius, double angle) {
   return {radius * std::cos(angle), radius * std::sin(angle)};

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/index.hpp"
 #include "core/geometry/facet_triangulation.hpp"
 #include "core/geometry/indexed_surface.hpp"
 #include "tests/support/layered_facets.hpp"
@@ -17,10 +18,6 @@ namespace {
 
 // Of the area of a pair of triangles: the least that a flip may leave to one of them.
 constexpr double kLeastShare = 1e-3;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 class SurfaceMaker {
  public:

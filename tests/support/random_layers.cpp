@@ -8,16 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/index.hpp"
 #include "core/base/random.hpp"
 #include "tests/support/layered_facets.hpp"
 #include "tests/support/placement.hpp"
 
 namespace symcell::test {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 class PlcMaker {
  public:

@@ -8,16 +8,13 @@
 #include <set>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/base/random.hpp"
 #include "tests/support/layered_cells.hpp"
 #include "tests/support/placement.hpp"
 
 namespace symcell::test {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 class PlanarMaker {
  public:

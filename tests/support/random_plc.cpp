@@ -6,15 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/index.hpp"
 #include "core/base/random.hpp"
 #include "core/geometry/axis_frame.hpp"
 
 namespace symcell::test {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // A ring of points about the axis: `per_sector` of them, repeated `fold` times.
 struct Ring {

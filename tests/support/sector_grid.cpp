@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/base/index.hpp"
+
 namespace symcell::test {
 namespace {
 
@@ -14,10 +16,6 @@ constexpr double kThin = 0.12;         // of an ordinary width
 constexpr double kUneven = 0.12;       // of a width: how far points are moved
 constexpr double kWidestColumn = 100;  // degrees, seen from the centre
 constexpr double kWidestUneven = 50;   // likewise, where points are moved
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Collects points, cells and lines, and finds edges and orbits.
 class GridBuilder {

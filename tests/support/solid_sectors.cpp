@@ -5,12 +5,10 @@
 #include <numbers>
 #include <utility>
 
+#include "core/base/index.hpp"
+
 namespace symcell::test {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 class PrismBuilder {
  public:

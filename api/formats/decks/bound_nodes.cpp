@@ -6,13 +6,10 @@
 #include <span>
 
 #include "api/formats/mesh_groups.hpp"
+#include "core/base/index.hpp"
 
 namespace symcell::internal {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // `nodes`: all of one orbit off the axis, two at least.
 void add_copies(const SymmetryCellMesh& cell,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/index.hpp"
+
 namespace symcell::internal {
 namespace {
 
@@ -12,10 +14,6 @@ namespace {
 constexpr double kWrittenRounding = 1e-12;
 // The share of the shortest edge within which CalculiX was seen to find every image.
 constexpr double kToleranceOfEdge = 1e-6;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 class Planner {
  public:

@@ -8,6 +8,7 @@
 
 #include "api/formats/decks/deck_numbers.hpp"
 #include "api/formats/turn_map.hpp"
+#include "core/base/index.hpp"
 
 namespace symcell::internal {
 namespace {
@@ -29,10 +30,6 @@ constexpr std::int64_t kLeastFreedoms = 5;  // per mode: CalculiX's subspace is 
 
 constexpr std::array<std::string_view, 5> kReserved{"NALL", "EALL", "SUPPORT", "LOWER_BOUND",
                                                     "HIGHER_BOUND"};
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::string number(double value) {
   return fitting_number(value, kFieldBytes);

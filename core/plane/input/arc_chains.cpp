@@ -4,15 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/index.hpp"
 #include "core/geometry/arc.hpp"
 #include "core/geometry/point_tree.hpp"
 
 namespace symcell::plane {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // From vertex to vertex, with none between.
 struct Piece {

@@ -7,6 +7,7 @@
 #include <string>
 #include <tuple>
 
+#include "core/base/index.hpp"
 #include "core/geometry/arc.hpp"
 #include "core/geometry/box_tree.hpp"
 #include "core/geometry/point_grid.hpp"
@@ -14,10 +15,6 @@
 
 namespace symcell::plane {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // A curve by its ends, as geometry.
 struct Shape {

@@ -5,15 +5,12 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/base/index.hpp"
 #include "core/geometry/arc.hpp"
 #include "core/geometry/point_grid.hpp"
 
 namespace symcell::plane {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // By length: it does not depend on where curves are cut.
 Point2 centroid_of(const Pslg& pslg, const ArcChains& arcs) {

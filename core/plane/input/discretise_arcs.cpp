@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/arc.hpp"
 #include "core/geometry/point_grid.hpp"
 #include "core/model/describe.hpp"
@@ -26,10 +27,6 @@ constexpr double kMostBulge = 1e4;  // less than 1/5000 of a turn from a full on
 constexpr int kMostDoublings = 8;   // of the chords of arcs that lie close
 constexpr double kCoarsestChord = std::numbers::pi / 3;
 constexpr std::int64_t kPlainFold = 12;  // circles about one centre alone: chords by the dozen
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Result<void> check_bulges(const Pslg& pslg) {
   for (std::size_t s = 0; s < pslg.bulges.size(); ++s) {

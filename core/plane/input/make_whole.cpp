@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/index.hpp"
 #include "core/cell/warning.hpp"
 #include "core/geometry/point_grid.hpp"
 #include "core/geometry/rotation.hpp"
@@ -26,10 +27,6 @@ constexpr double kAreaRel = 1e-3;
 // Vertices of two copies that are so many tolerances apart, and more than one, were meant to be one:
 // what is left between them would be meshed as a step in the part.
 constexpr double kNearMisses = 100;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // The faces of a model, arcs as chords.
 struct Faces {

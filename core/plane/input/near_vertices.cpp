@@ -4,14 +4,11 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/base/index.hpp"
 #include "core/geometry/segment_index.hpp"
 
 namespace symcell::plane {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 struct Cut {
   std::int32_t segment = 0;

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "core/base/index.hpp"
 #include "core/base/union_find.hpp"
 #include "core/geometry/predicates.hpp"
 #include "core/model/describe.hpp"
@@ -14,10 +15,6 @@ namespace symcell::plane {
 namespace {
 
 constexpr std::int32_t kNone = -1;  // no vertex, segment, piece or face
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 bool before(Point2 p, Point2 q) {
   return p.x < q.x || (p.x == q.x && p.y < q.y);

@@ -2,15 +2,12 @@
 
 #include <algorithm>
 
+#include "core/base/index.hpp"
 #include "core/geometry/resolution.hpp"
 #include "core/plane/input/near_vertices.hpp"
 
 namespace symcell::plane {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Point2 middle_of(const std::vector<Point2>& vertices) {
   if (vertices.empty()) return {};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/base/index.hpp"
 #include "core/geometry/limits.hpp"
 #include "core/geometry/point_grid.hpp"
 #include "core/geometry/predicates.hpp"
@@ -13,10 +14,6 @@
 
 namespace symcell::plane {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::string pointer_to(const char* array, std::size_t index) {
   return "/" + std::string(array) + "/" + std::to_string(index);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/base/index.hpp"
 #include "core/geometry/point_tree.hpp"
 #include "core/model/describe.hpp"
 
@@ -14,10 +15,6 @@ namespace symcell::plane {
 namespace {
 
 constexpr double kParts[] = {0.25, 0.5, 0.75};  // of a chain's length: places that are compared
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 class Matcher {
  public:

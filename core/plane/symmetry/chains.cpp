@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/index.hpp"
+
 namespace symcell::plane {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 PreparedEdge reversed(PreparedEdge edge) {
   std::swap(edge.a, edge.b);

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <string>
 
+#include "core/base/index.hpp"
+
 namespace symcell::plane {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Failure not_symmetric(std::string what, std::vector<std::int64_t> segments) {
   const std::string pointer = "/segments/" + std::to_string(segments.front());

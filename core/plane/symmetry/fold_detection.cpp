@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/cell/inspection.hpp"
 
 namespace symcell::plane {
@@ -38,10 +39,6 @@ constexpr double kFirstTurns[] = {0.382, 0.5, 0.276, 0.146};
 // Looks at samples for folds that no circle of vertices suggests: below a tenth of a second.
 constexpr std::int64_t kMostLooks = 60'000;
 constexpr std::size_t kFirstSamples[] = {4, 32, 256, kMaxSamples};
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Point2 turn(Point2 p, Point2 centre, double cosine, double sine) {
   const Point2 q = p - centre;

@@ -4,16 +4,13 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/base/index.hpp"
 #include "core/plane/symmetry/prepared_pslg.hpp"
 #include "core/plane/symmetry/symmetrise.hpp"
 #include "core/plane/symmetry/symmetrise_subdomains.hpp"
 
 namespace symcell::plane {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Faces that share a piece of segment are one component.
 std::size_t count_components(const Subdomains& subdomains) {

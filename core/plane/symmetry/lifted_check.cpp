@@ -3,16 +3,13 @@
 #include <memory>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/rotation.hpp"
 #include "core/model/describe.hpp"
 #include "core/plane/input/planar_map.hpp"
 
 namespace symcell::plane {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Failure degenerate(const std::string& what) {
   return fail(ErrorCode::kNotSymmetric,

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "core/base/index.hpp"
 #include "core/geometry/point_grid.hpp"
 #include "core/geometry/rotation.hpp"
 #include "core/model/describe.hpp"
@@ -12,10 +13,6 @@
 
 namespace symcell::plane {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // A vertex that cuts an edge: its place along the edge and which it is.
 struct Cut {

@@ -4,12 +4,10 @@
 #include <map>
 #include <utility>
 
+#include "core/base/index.hpp"
+
 namespace symcell::plane {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::int32_t label_of(const Subdomain& face) {
   if (!face.meshed) return kNotMeshed;

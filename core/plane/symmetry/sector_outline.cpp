@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/outline_distance.hpp"
 #include "core/geometry/rotation.hpp"
 #include "core/plane/symmetry/chain_fit.hpp"
@@ -27,10 +28,6 @@ constexpr double kLinkShare = 0.3;
 // Turns by which a loop is compared with itself, and places in each.
 constexpr std::int32_t kMostTurns = 16;
 constexpr std::size_t kMostPlaces = 4000;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 PreparedPslg cut_at_centre(PreparedPslg prepared, std::int32_t edge, Point2 centre) {
   PreparedEdge rest = prepared.edges[at(edge)];

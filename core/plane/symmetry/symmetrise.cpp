@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/cell/inspection.hpp"
 #include "core/geometry/limits.hpp"
 #include "core/geometry/segment_index.hpp"
@@ -17,10 +18,6 @@
 
 namespace symcell::plane {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Result<void> check_options(const MeshOptions& options) {
   if (options.fold && (*options.fold < 1 || *options.fold > kMaxFold)) {

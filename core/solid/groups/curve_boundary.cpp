@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/cell/edge_orbit.hpp"
 #include "core/geometry/quadratic_tet.hpp"
 #include "core/geometry/tet_measures.hpp"
@@ -45,10 +46,6 @@ constexpr double kLeastJacobian = 0.1;
 constexpr double kSameWay = 0.996;
 // Limits are looked at every so many entities.
 constexpr std::size_t kCheckedEach = 1024;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 bool is_finite(Point3 p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);

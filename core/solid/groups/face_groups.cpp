@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/base/union_find.hpp"
 #include "core/geometry/rotation.hpp"
 #include "core/solid/groups/face_regions.hpp"
@@ -29,10 +30,6 @@ constexpr std::size_t kCheckedEach = 4096;
 // An axis is that of symmetry if their directions differ by less, in radians, and their distance is
 // within twice the reach of copies.
 constexpr double kSameAxis = 5e-3;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Four digits: 12.5, 0.003.
 std::string short_number(double value) {

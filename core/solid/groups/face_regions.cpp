@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "core/base/index.hpp"
 #include "core/base/union_find.hpp"
 #include "core/geometry/rotation.hpp"
 
@@ -19,10 +20,6 @@ constexpr std::size_t kMostTurned = 2000;
 constexpr double kSameWay = 0.5;
 // Limits are looked at every so many triangles.
 constexpr std::size_t kCheckedEach = 4096;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 struct Side {
   double turn;    // radians

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/index.hpp"
 #include "core/geometry/rotation.hpp"
 
 namespace symcell::solid {
@@ -21,10 +22,6 @@ constexpr std::size_t kCheckedEach = 1024;
 // A place is looked for again from so many sides of a facet, along its normal: the surface round an
 // edge looks another way than the facet, and what is right above or below it as a rule does not.
 constexpr std::array<double, 2> kAlongNormal = {0.25, -0.25};
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 class Labels {
  public:

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "core/base/index.hpp"
 #include "core/geometry/axis_frame.hpp"
 #include "core/geometry/symmetric_eigen.hpp"
 #include "core/solid/groups/face_regions.hpp"
@@ -34,10 +35,6 @@ constexpr double kMostExtents = 50;
 constexpr double kBendOfTorus = 10;
 // A cone with an angle below is a cylinder, and above its complement a plane.
 constexpr double kLeastConeAngle = 0.5 * kRadiansADegree;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Least squares: rows are added, then the normal equations solved with pivoting.
 template <std::size_t N>

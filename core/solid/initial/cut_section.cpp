@@ -9,6 +9,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/base/index.hpp"
+
 namespace symcell::solid::initial {
 namespace {
 
@@ -22,10 +24,6 @@ using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
     Kernel,
     Tds,
     CGAL::No_constraint_intersection_requiring_constructions_tag>;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Failure failed(const std::string& why) {
   return fail(ErrorCode::kTetrahedralizationFailed, "section of the solid with the cut: " + why);

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/solid/initial/cut_section.hpp"
 #include "core/solid/initial/sector_mesh.hpp"
 #include "core/solid/initial/sector_parts.hpp"
@@ -19,10 +20,6 @@ using initial::SectorParts;
 
 // Volume of the mesh against that of the boundary: both are sums of rounded terms.
 constexpr double kVolumeToleranceRel = 1e-6;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Failure failed(const std::string& why) {
   return fail(ErrorCode::kTetrahedralizationFailed, "gluing the sector to its images: " + why);

@@ -5,15 +5,12 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/rotation.hpp"
 #include "core/solid/initial/tetgen.hpp"
 
 namespace symcell::solid::initial {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Failure failed(const std::string& why) {
   return fail(ErrorCode::kTetrahedralizationFailed, "tetrahedralization of the sector: " + why);

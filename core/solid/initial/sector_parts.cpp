@@ -7,15 +7,12 @@
 #include <optional>
 #include <string>
 
+#include "core/base/index.hpp"
 #include "core/geometry/predicates_3.hpp"
 #include "core/geometry/rotation.hpp"
 
 namespace symcell::solid::initial {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // The half-faces by which the section's faces bound the wedge from inside; kNoHalfFace: none.
 struct SectionSides {

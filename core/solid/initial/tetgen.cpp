@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/base/random.hpp"
 
 namespace symcell::solid {
@@ -108,10 +109,6 @@ Result<Tetrahedralization> parse(const TriangleComplex& complex, std::span<const
     }
   }
   return mesh;
-}
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
 }
 
 struct Shuffled {

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/index.hpp"
 #include "core/geometry/resolution.hpp"
 #include "core/geometry/triangle_tree.hpp"
 #include "core/model/describe.hpp"
@@ -11,10 +12,6 @@
 
 namespace symcell::solid {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::string seed_name(const char* kind, std::size_t i, Point3 p) {
   return std::string(kind) + " seed " + std::to_string(i) + " at " + describe_point(p);

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/point_tree.hpp"
 #include "core/geometry/predicates.hpp"
 #include "core/geometry/resolution.hpp"
@@ -12,10 +13,6 @@
 
 namespace symcell::solid {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Point3 least(Point3 p, Point3 q) {
   return {std::min(p.x, q.x), std::min(p.y, q.y), std::min(p.z, q.z)};

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/base/union_find.hpp"
 #include "core/geometry/box_tree.hpp"
 #include "core/geometry/indexed_surface.hpp"
@@ -12,10 +13,6 @@
 
 namespace symcell::solid {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Turns the model so that no facet stands upright and no two vertices above each other but by rare
 // accident: rays along z then meet few degenerate cases. An arbitrary rotation.

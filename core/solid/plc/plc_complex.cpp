@@ -5,15 +5,12 @@
 #include <string>
 #include <tuple>
 
+#include "core/base/index.hpp"
 #include "core/geometry/predicates.hpp"
 #include "core/model/describe.hpp"
 
 namespace symcell::solid {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // The segments of a facet: the sides of its polygons, each once.
 std::vector<IndexPair> sides_of(const PlcFacet& facet) {

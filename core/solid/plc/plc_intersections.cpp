@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/index.hpp"
 #include "core/geometry/self_intersections.hpp"
 #include "core/model/describe.hpp"
 
@@ -21,10 +22,6 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using P = Kernel::Point_3;
 using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::int32_t>;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 struct Stop {};
 

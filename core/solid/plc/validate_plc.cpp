@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/limits.hpp"
 #include "core/geometry/point_tree.hpp"
 #include "core/geometry/resolution.hpp"
@@ -16,10 +17,6 @@
 
 namespace symcell::solid {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::string pointer_to(const char* array, std::size_t index) {
   return "/" + std::string(array) + "/" + std::to_string(index);

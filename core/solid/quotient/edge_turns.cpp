@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/index.hpp"
+
 namespace symcell::solid {
 namespace {
 
@@ -60,8 +62,6 @@ class TurnChecker {
 
  private:
   static constexpr std::uint8_t kUnknown = 255;
-
-  static std::size_t at(VertexId v) { return static_cast<std::size_t>(v); }
 
   // The tetrahedra at a vertex inside, seen from it, are triangles on the sphere of directions, all
   // turned the same way, and each side has a triangle on both sides: they cover all directions

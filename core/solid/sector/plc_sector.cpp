@@ -7,14 +7,11 @@
 #include <tuple>
 
 #include "core/base/assert.hpp"
+#include "core/base/index.hpp"
 #include "core/geometry/rotation.hpp"
 
 namespace symcell::solid {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Angle about the axis in [0, 2 pi).
 double angle_of(Point3 p) {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/triangle_tree.hpp"
 
 namespace symcell::solid {
@@ -27,10 +28,6 @@ double wrapped(double angle) {
 
 Point3 centroid(const SizeSource& s) {
   return (1.0 / 3) * (s.place[0] + s.place[1] + s.place[2]);
-}
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/model/describe.hpp"
 
 namespace symcell::solid {
@@ -17,10 +18,6 @@ namespace {
 constexpr double kLeastTurn = 0.01;
 // Names in a message.
 constexpr std::size_t kMostListed = 30;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::string listed(const std::vector<MarkerName>& names) {
   std::string text;

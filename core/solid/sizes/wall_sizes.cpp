@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/base/index.hpp"
+
 namespace symcell::solid {
 namespace {
 
@@ -22,10 +24,6 @@ constexpr std::size_t kCheckedEach = 256;
 // Shares of the corners: where the thickness of a triangle is looked at.
 constexpr std::array<std::array<double, 3>, 4> kPlaces = {
     {{1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.8, 0.1, 0.1}, {0.1, 0.8, 0.1}, {0.1, 0.1, 0.8}}};
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // The thickness below which the wall lies on no more than a few of the area.
 double thinnest(const std::vector<SizeSource>& walls, const std::vector<double>& areas) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/index.hpp"
 #include "core/geometry/point_tree.hpp"
 #include "core/geometry/rotation.hpp"
 #include "core/geometry/triangle_tree.hpp"
@@ -21,10 +22,6 @@ constexpr double kOpposite = -0.5;
 // By which the areas of both cuts may differ, beside what the tolerance gives: chords of one cut and of
 // the other.
 constexpr double kAreaRel = 1e-3;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 class Whole {
  public:

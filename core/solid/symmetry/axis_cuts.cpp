@@ -5,14 +5,11 @@
 #include <string>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/resolution.hpp"
 
 namespace symcell::solid {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 class AxisCutter {
  public:

@@ -5,15 +5,12 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/rotation.hpp"
 #include "core/model/describe.hpp"
 
 namespace symcell::solid {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // A facet up to the order of its parts: its segments with the number of their inner sides, and its
 // lone points (second entry -1).

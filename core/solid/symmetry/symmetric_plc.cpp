@@ -6,15 +6,12 @@
 #include <string>
 #include <utility>
 
+#include "core/base/index.hpp"
 #include "core/geometry/rotation.hpp"
 #include "core/solid/symmetry/axis_cuts.hpp"
 
 namespace symcell::solid {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // The representative of each orbit is the mean of its copies turned back.
 std::vector<Point3> average_orbits(const PlcComplex& complex,

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/index.hpp"
 #include "core/base/random.hpp"
 #include "core/mesh_model.hpp"
 #include "core/solid/cut/cut_cell.hpp"
@@ -26,10 +27,6 @@
 
 namespace symcell {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 struct Sample {
   std::string name;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/index.hpp"
 #include "core/solid/quotient/constraints.hpp"
 #include "tests/unit/core/solid/solid_checks.hpp"
 
@@ -18,10 +19,6 @@ namespace {
 
 constexpr double kDiameter = 4.2;
 constexpr std::int32_t kAxisSegment = 0;  // of the samples
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 struct Case {
   std::int32_t fold;

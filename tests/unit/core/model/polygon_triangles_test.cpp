@@ -6,12 +6,10 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/base/index.hpp"
+
 namespace symcell {
 namespace {
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Point3 area_vector(const TriangleSurface& surface, const std::array<std::int32_t, 3>& t) {
   const Point3 a = surface.vertices[at(t[0])];
