@@ -5,6 +5,7 @@
 #include <cstring>
 #include <memory>
 
+#include "api/formats/cell_input.hpp"
 #include "api/formats/gzip.hpp"
 #include "api/formats/model_reader.hpp"
 #include "api/formats/vtu_reader.hpp"
@@ -58,6 +59,14 @@ Result<std::string> read_mesh_input(const std::string& path) {
   return read_up_to(path, kMaxMeshBytes);
 }
 
+Result<SymmetryCellMesh> read_cell_file(const std::string& path) {
+  const Result<std::string> bytes = read_mesh_input(path);
+  if (!bytes) return error_of(bytes);
+  auto cell = read_cell(*bytes);
+  if (!cell) cell.error().message = path + ": " + cell.error().message;
+  return cell;
+}
+
 Result<MeshData> read_mesh_file(const std::string& path) {
   const Result<std::string> bytes = read_mesh_input(path);
   if (!bytes) return error_of(bytes);
@@ -67,7 +76,13 @@ Result<MeshData> read_mesh_file(const std::string& path) {
     if (!text) return error_of(text);
     return read_vtu(*text);
   }();
-  if (!mesh) mesh.error().message = path + ": " + mesh.error().message;
+  if (mesh) return mesh;
+  Error& error = mesh.error();
+  error.message = path + ": " + error.message;
+  if (error.code == ErrorCode::kUnknownFormat) {
+    error.message += "; meshes are checked as VTU, which \"symcell convert " + path +
+                     " --cell c.vtu\" makes of a cell in JSON or of a job";
+  }
   return mesh;
 }
 

@@ -50,8 +50,11 @@ Result<void> LocalEngine::run(const EngineJob& job, ExecutionContext& context) {
   auto outcome = mesh_model(*model, job.options, context);
   if (!outcome) return error_of(outcome);
 
-  SYMCELL_TRY(check_gates(judge(
-      job.options.fail_on, statistics_to_json(outcome->statistics, job.options, kind_of(*model)))));
+  if (!job.options.fail_on.empty()) {
+    SYMCELL_TRY(
+        check_gates(judge(job.options.fail_on,
+                          statistics_to_json(outcome->statistics, job.options, kind_of(*model)))));
+  }
   watch.lap();
   context.report(Phase::kWrite, 0.99, outcome->mesh.element_count());
   SYMCELL_TRY(write_cell(outcome->mesh, job.cell));
