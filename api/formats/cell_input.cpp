@@ -82,7 +82,7 @@ class Rebuilder {
     return in_.order == 1 ? facet_corners() : (in_.dimension == 2 ? 3 : 6);
   }
 
-  Result<void> check_sizes() const {
+  [[nodiscard]] Result<void> check_sizes() const {
     if (in_.fold < 1 || in_.order < 1 || in_.order > 2) return misfit("fold or order");
     if (in_.dimension != 2 && in_.dimension != 3) return misfit("dimension is neither 2 nor 3");
     SYMCELL_TRY(check_places());
@@ -109,7 +109,7 @@ class Rebuilder {
     return {};
   }
 
-  Result<void> check_places() const {
+  [[nodiscard]] Result<void> check_places() const {
     const auto sound = [](Point3 p) {
       return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kMostCoordinate;
     };
@@ -173,6 +173,7 @@ class Rebuilder {
       local.assign(kTetFaces[f].begin(), kTetFaces[f].end());
     }
     std::vector<std::int32_t> nodes;
+    nodes.reserve(nodes_per_facet());
     for (const std::size_t c : local) nodes.push_back(own[c]);
     if (in_.order == 1) return nodes;
     for (std::size_t i = 0; i < (local.size() == 2 ? 1 : local.size()); ++i) {

@@ -172,13 +172,47 @@ bool sort_nodes(Nodes& n, std::int32_t dimension) {
   return even;
 }
 
+namespace {
+
+// Sums of these are told apart: no two sets of nodes are expected to have the same.
+std::uint64_t key_of(std::int32_t node) {
+  return mix(static_cast<std::uint32_t>(node) + std::uint64_t{0x9e3779b97f4a7c15ULL});
+}
+
+// The number if `odd` is 0, the negative if it is 1.
+std::uint64_t with_sign(std::uint64_t number, std::uint64_t odd) {
+  return (number ^ (~odd + 1)) + odd;
+}
+
+std::uint64_t exceeds(std::int32_t a, std::int32_t b) {
+  return a > b ? 1 : 0;
+}
+
+}  // namespace
+
 std::uint64_t number_of(const Nodes& n) {
-  const auto u = [](std::int32_t i) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i));
-  };
-  // Odd, without a short relation: the first bits of three irrational numbers.
-  return mix(u(n[0]) * 0x9e3779b97f4a7c15ULL + u(n[1]) * 0xbb67ae8584caa73bULL +
-             u(n[2]) * 0x3c6ef372fe94f82bULL);
+  return mix(key_of(n[0]) + key_of(n[1]) + (n[2] < 0 ? 0 : key_of(n[2])));
+}
+
+// Facets as in kSides and kFaces. A permutation is odd if its pairs in falling order are; they are
+// counted without branches, for which way is as good as random.
+std::uint64_t signed_sides_2(const std::int32_t* v) {
+  const std::array<std::uint64_t, 3> key{key_of(v[0]), key_of(v[1]), key_of(v[2])};
+  return with_sign(mix(key[1] + key[2]), exceeds(v[1], v[2])) +
+         with_sign(mix(key[2] + key[0]), exceeds(v[2], v[0])) +
+         with_sign(mix(key[0] + key[1]), exceeds(v[0], v[1]));
+}
+
+std::uint64_t signed_faces_3(const std::int32_t* v) {
+  const std::array<std::uint64_t, 4> key{key_of(v[0]), key_of(v[1]), key_of(v[2]), key_of(v[3])};
+  const std::uint64_t all = key[0] + key[1] + key[2] + key[3];
+  const std::uint64_t o01 = exceeds(v[0], v[1]), o02 = exceeds(v[0], v[2]),
+                      o03 = exceeds(v[0], v[3]), o12 = exceeds(v[1], v[2]),
+                      o13 = exceeds(v[1], v[3]), o23 = exceeds(v[2], v[3]);
+  return with_sign(mix(all - key[0]), o12 ^ o13 ^ o23) +
+         with_sign(mix(all - key[1]), o02 ^ o03 ^ o23 ^ 1) +
+         with_sign(mix(all - key[2]), o01 ^ o03 ^ o13) +
+         with_sign(mix(all - key[3]), o01 ^ o02 ^ o12 ^ 1);
 }
 
 std::string name_of(const Nodes& n) {

@@ -26,6 +26,11 @@ bool sort_nodes(Nodes& nodes, std::int32_t dimension);
 // A number that no two facets are expected to share, nor sums of some to be those of others.
 [[nodiscard]] std::uint64_t number_of(const Nodes& nodes);
 
+// Numbers of an element's facets, those that are odd negative: of both sides of a facet the sum is 0.
+// `v`: the nodes of a triangle, of a tetrahedron.
+[[nodiscard]] std::uint64_t signed_sides_2(const std::int32_t* v);
+[[nodiscard]] std::uint64_t signed_faces_3(const std::int32_t* v);
+
 [[nodiscard]] std::string name_of(const Nodes& nodes);
 
 [[nodiscard]] Failure broken(const std::string& what);
@@ -51,6 +56,11 @@ class FacetTable {
   // Adds facet i of its element. The other element of the facet, -1: this is the first.
   // Errors: a third element, two on one side, more different facets than were said to come.
   [[nodiscard]] Result<std::int32_t> add(const ElementFacet& facet, std::size_t i);
+
+  // Says that the facet is soon added.
+  void prefetch(const ElementFacet& facet) const {
+    __builtin_prefetch(&places_[facet.number & (places_.size() - 1)]);
+  }
 
   // Whether a facet of these nodes, ascending, has two elements.
   [[nodiscard]] bool is_inner(const Nodes& sorted) const;

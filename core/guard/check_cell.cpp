@@ -38,6 +38,9 @@ constexpr double kCoordinateRounding = 32 * 0x1p-53;
 // So many open facets are found by their names; more are too many before that.
 constexpr std::size_t kOpenFacetsNamed = 64;
 
+// More than fit the time of a fetch from memory, few enough to stay in the nearest cache.
+constexpr std::size_t kFacetsAhead = 16;
+
 class CellChecker {
  public:
   CellChecker(const SymmetryCellMesh& cell, const BoundaryTopology* boundary)
@@ -49,8 +52,10 @@ class CellChecker {
   Result<void> run() {
     SYMCELL_TRY(check_fields());
     SYMCELL_TRY(check_nodes());
-    SYMCELL_TRY(check_orientation());
+    SYMCELL_TRY(place_nodes());
     mark_surface();
+    SYMCELL_TRY(sweep_elements());
+    SYMCELL_TRY(check_copies());
     SYMCELL_TRY(gather_facets());
     SYMCELL_TRY(check_bounds());
     SYMCELL_TRY(check_outer());
@@ -89,88 +94,55 @@ class CellChecker {
     return {};
   }
 
-  Result<void> check_nodes() {
-    std::vector<char> used(cell_.nodes.size(), 0);
-    for (std::size_t e = 0; e < cell_.element_count(); ++e) {
-      const std::int32_t* v = element(e);
-      for (std::size_t i = 0; i < corners_; ++i) {
-        if (v[i] < 0 || at(v[i]) >= used.size()) return broken("a corner is no node");
-        used[at(v[i])] = 1;
-        if (std::find(v, v + i, v[i]) != v + i) {
-          return broken("element " + std::to_string(e) + " names a node twice");
-        }
-      }
-    }
-    std::vector<std::pair<std::int32_t, std::int32_t>> copies;
-    std::vector<std::int32_t> first(cell_.orbit_points.size(), -1);
+  [[nodiscard]] Result<void> check_nodes() const {
+    std::vector<char> has_node(cell_.orbit_points.size(), 0);
     for (std::size_t n = 0; n < cell_.nodes.size(); ++n) {
       const OrbitVertex v = cell_.nodes[n];
-      if (used[n] == 0) return broken("node " + std::to_string(n) + " is not used");
-      if (v.orbit < 0 || at(v.orbit) >= first.size() || v.exponent < 0 ||
+      if (v.orbit < 0 || at(v.orbit) >= has_node.size() || v.exponent < 0 ||
           v.exponent >= cell_.fold || (v.exponent != 0 && cell_.on_axis[at(v.orbit)] != 0)) {
         return broken("node " + std::to_string(n) + " is no copy of an orbit");
       }
-      std::int32_t& own = first[at(v.orbit)];
-      if (own >= 0) {
-        copies.emplace_back(v.orbit, v.exponent);
-        copies.emplace_back(v.orbit, cell_.nodes[at(own)].exponent);
-      }
-      if (own < 0) own = static_cast<std::int32_t>(n);
+      has_node[at(v.orbit)] = 1;
     }
-    if (std::find(first.begin(), first.end(), -1) != first.end()) {
-      return broken("an orbit has no node");
-    }
-    return check_copies(std::move(copies));
+    if (std::find(has_node.begin(), has_node.end(), 0) == has_node.end()) return {};
+    return broken("an orbit has no node");
   }
 
   // Of orbits with several nodes the first is listed with each of the others.
-  static Result<void> check_copies(std::vector<std::pair<std::int32_t, std::int32_t>> copies) {
+  [[nodiscard]] Result<void> check_copies() const {
+    std::vector<std::int32_t> first(cell_.orbit_points.size(), -1);
     std::vector<std::pair<std::int32_t, std::int32_t>> others;
-    for (std::size_t i = 0; i < copies.size(); i += 2) {
-      if (copies[i] == copies[i + 1]) return broken("two nodes are one copy of an orbit");
-      others.push_back(copies[i]);
+    for (std::size_t n = 0; n < cell_.nodes.size(); ++n) {
+      const OrbitVertex v = cell_.nodes[n];
+      std::int32_t& own = first[at(v.orbit)];
+      if (own < 0) {
+        own = v.exponent;
+        continue;
+      }
+      if (own == v.exponent) return broken("two nodes are one copy of an orbit");
+      others.emplace_back(v.orbit, v.exponent);
     }
     std::sort(others.begin(), others.end());
-    if (std::adjacent_find(others.begin(), others.end()) != others.end()) {
-      return broken("two nodes are one copy of an orbit");
-    }
-    return {};
+    if (std::adjacent_find(others.begin(), others.end()) == others.end()) return {};
+    return broken("two nodes are one copy of an orbit");
   }
 
-  // In all sectors, and as written: by more than the rounding of a node's rotation and move into
-  // the model's frame may change.
-  [[nodiscard]] Result<void> check_orientation() const {
+  // Places of the nodes in the axis' frame, and the doubt of a difference of two as written.
+  Result<void> place_nodes() {
     const RotationTable rotations(cell_.fold);
-    double largest = std::max({std::abs(cell_.axis_origin.x), std::abs(cell_.axis_origin.y),
-                               std::abs(cell_.axis_origin.z)});
     double reach = 0;
-    std::vector<Point3> points;
-    points.reserve(cell_.nodes.size());
+    points_.reserve(cell_.nodes.size());
     for (const OrbitVertex& v : cell_.nodes) {
       const Point3 p = cell_.orbit_points[at(v.orbit)];
       if (cell_.fold > 1 && cell_.on_axis[at(v.orbit)] != 0 && (p.x != 0 || p.y != 0)) {
         return broken("orbit " + std::to_string(v.orbit) + " is not on the axis");
       }
-      points.push_back(rotations.rotate(p, v.exponent));
+      points_.push_back(rotations.rotate(p, v.exponent));
       reach = std::max(reach, length(p));
     }
-    largest += reach;
-    const double off = kCoordinateRounding * largest;  // of a difference of two nodes
-    for (std::size_t e = 0; e < cell_.element_count(); ++e) {
-      const std::int32_t* v = element(e);
-      const Point3 a = points[at(v[0])];
-      const Point3 p = points[at(v[1])] - a, q = points[at(v[2])] - a;
-      const double lp = length(p), lq = length(q);
-      double size = cross(p, q).z, doubt = off * (lp + lq);
-      if (dimension_ == 3) {
-        const Point3 r = points[at(v[3])] - a;
-        const double lr = length(r);
-        size = dot(cross(p, q), r);
-        doubt = off * (lp * lq + lq * lr + lr * lp);
-      }
-      if (size > doubt) continue;
-      return broken("element " + std::to_string(e) + " is flat or turned inside out");
-    }
+    const Point3 origin = cell_.axis_origin;
+    const double offset = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)});
+    off_ = kCoordinateRounding * (offset + reach);
     return {};
   }
 
@@ -186,39 +158,88 @@ class CellChecker {
     return is_marked(n[0]) && is_marked(n[1]) && (n[2] < 0 || is_marked(n[2]));
   }
 
-  // How many facets of elements have a marked node.
-  [[nodiscard]] std::size_t count_marked_facets() const {
-    std::size_t count = 0;
+  // Each element by itself, in one sweep.  Of those away from the cell's surface the facets' sides
+  // must cancel; the others are listed, to be matched facet by facet.
+  Result<void> sweep_elements() {
+    std::vector<char> used(cell_.nodes.size(), 0);
     for (std::size_t e = 0; e < cell_.element_count(); ++e) {
       const std::int32_t* v = element(e);
-      const auto marked = std::count_if(v, v + corners_, [&](auto n) { return is_marked(n); });
-      if (marked > 0) count += marked == 1 ? corners_ - 1 : corners_;
+      std::size_t marked = 0;
+      for (std::size_t i = 0; i < corners_; ++i) {
+        if (v[i] < 0 || at(v[i]) >= used.size()) return broken("a corner is no node");
+        used[at(v[i])] = 1;
+        marked += marked_[at(v[i])] != 0 ? 1 : 0;
+      }
+      if (!(dimension_ == 2 ? is_positive_2(v) : is_positive_3(v))) return not_positive(e);
+      if (marked == 0) {
+        sum_ += dimension_ == 2 ? internal::signed_sides_2(v) : internal::signed_faces_3(v);
+        continue;
+      }
+      at_surface_.push_back(static_cast<std::int32_t>(e));
+      facets_at_surface_ += marked == 1 ? corners_ - 1 : corners_;
     }
-    return count;
+    const auto unused = std::find(used.begin(), used.end(), 0);
+    if (unused == used.end()) return {};
+    return broken("node " + std::to_string(unused - used.begin()) + " is not used");
   }
 
-  // Those with a marked node are matched one by one; of the others the sides must cancel.
+  // In all sectors, and as written: by more than the rounding of a node's rotation and move into
+  // the model's frame may change.
+  [[nodiscard]] bool is_positive_2(const std::int32_t* v) const {
+    const Point3 a = points_[at(v[0])];
+    const Point3 p = points_[at(v[1])] - a, q = points_[at(v[2])] - a;
+    return cross(p, q).z > off_ * (length(p) + length(q));
+  }
+  [[nodiscard]] bool is_positive_3(const std::int32_t* v) const {
+    const Point3 a = points_[at(v[0])];
+    const Point3 p = points_[at(v[1])] - a, q = points_[at(v[2])] - a, r = points_[at(v[3])] - a;
+    const double size = dot(cross(p, q), r);
+    // Never less than the sum of products below, and without roots.
+    if (size > off_ * (dot(p, p) + dot(q, q) + dot(r, r))) return true;
+    const double lp = length(p), lq = length(q), lr = length(r);
+    return size > off_ * (lp * lq + lq * lr + lr * lp);
+  }
+  [[nodiscard]] Failure not_positive(std::size_t e) const {
+    std::vector<std::int32_t> nodes(element(e), element(e) + corners_);
+    std::sort(nodes.begin(), nodes.end());
+    const bool twice = std::adjacent_find(nodes.begin(), nodes.end()) != nodes.end();
+    return broken("element " + std::to_string(e) +
+                  (twice ? " names a node twice" : " is flat or turned inside out"));
+  }
+
   Result<void> gather_facets() {
-    const std::size_t sides = count_marked_facets();
     const std::size_t surface =
         (cell_.boundary.size() + cell_.lower_facets.size() + cell_.higher_facets.size()) /
         static_cast<std::size_t>(dimension_);
-    table_.emplace(cell_, std::min(sides, (sides + surface) / 2 + kOpenFacetsNamed));
-    inner_.reserve(sides / 2);
-    std::uint64_t sum = 0;
-    for (std::size_t e = 0; e < cell_.element_count(); ++e) {
+    table_.emplace(
+        cell_, std::min(facets_at_surface_, (facets_at_surface_ + surface) / 2 + kOpenFacetsNamed));
+    inner_.reserve(facets_at_surface_ / 2);
+    // The places of a table are all over memory: they are fetched some facets ahead.
+    std::array<std::pair<ElementFacet, std::size_t>, kFacetsAhead> ahead;
+    std::size_t read = 0, added = 0;
+    const auto add_next = [&]() -> Result<void> {
+      const auto& [f, i] = ahead[added++ % kFacetsAhead];
+      const auto other = table_->add(f, i);
+      if (!other) return error_of(other);
+      if (*other >= 0) inner_.push_back({f.nodes, {*other, f.element}});
+      return {};
+    };
+    for (const std::int32_t e : at_surface_) {
       for (std::size_t i = 0; i < corners_; ++i) {
-        const ElementFacet f = element_facet(cell_, e, i);
+        const ElementFacet f = element_facet(cell_, at(e), i);
         if (!is_marked(f.nodes[0]) && !is_marked(f.nodes[1]) && !is_marked(f.nodes[2])) {
-          sum += f.even ? f.number : ~f.number + 1;
+          sum_ += f.even ? f.number : ~f.number + 1;
           continue;
         }
-        const auto other = table_->add(f, i);
-        if (!other) return error_of(other);
-        if (*other >= 0) inner_.push_back({f.nodes, {*other, f.element}});
+        if (read - added == kFacetsAhead) {
+          SYMCELL_TRY(add_next());
+        }
+        table_->prefetch(f);
+        ahead[read++ % kFacetsAhead] = {f, i};
       }
     }
-    if (sum != 0) return broken("facets inside have not one element on each side");
+    while (added < read) SYMCELL_TRY(add_next());
+    if (sum_ != 0) return broken("facets inside have not one element on each side");
     outer_ = table_->outer();
     for (const ElementFacet& f : outer_) {
       if (!all_marked(f.nodes)) return broken("the facet " + name_of(f.nodes) + " has one element");
@@ -375,12 +396,17 @@ class CellChecker {
   const BoundaryTopology* boundary_;
   std::int32_t dimension_;
   std::size_t corners_;
-  std::vector<char> marked_;         // nodes of the cell's surface, and of facets inside
-  std::optional<FacetTable> table_;  // of facets with a marked node
-  std::vector<InnerFacet> inner_;    // of these those with two elements
-  std::vector<ElementFacet> outer_;  // with one element, sorted
-  std::vector<Role> role_;           // of outer_
-  std::vector<char> pinched_;        // orbits at which the full mesh touches itself
+  std::vector<Point3> points_;            // per node, in the axis' frame
+  double off_ = 0;                        // rounding of a difference of two nodes, as written
+  std::vector<char> marked_;              // nodes of the cell's surface, and of facets inside
+  std::vector<std::int32_t> at_surface_;  // elements with a marked node
+  std::size_t facets_at_surface_ = 0;     // of these: with a marked node, counted per element
+  std::uint64_t sum_ = 0;                 // of the sides of facets without a marked node
+  std::optional<FacetTable> table_;       // of facets with a marked node
+  std::vector<InnerFacet> inner_;         // of these those with two elements
+  std::vector<ElementFacet> outer_;       // with one element, sorted
+  std::vector<Role> role_;                // of outer_
+  std::vector<char> pinched_;             // orbits at which the full mesh touches itself
 };
 
 }  // namespace

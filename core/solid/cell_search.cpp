@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/base/stopwatch.hpp"
-#include "core/geometry/rotation.hpp"
 #include "core/guard/check_cell.hpp"
 #include "core/solid/cut/cut_cell.hpp"
 #include "core/solid/sector/mesh_boundary.hpp"
@@ -53,26 +52,6 @@ bool should_try_another_start(const RefinedSolid& mesh,
   return !sized && mesh.count() <= limits.small_cell && effort <= limits.start_budget;
 }
 
-// Nodes and middles of the boundary's facets, in the local frame.
-std::vector<Point3> boundary_points(const SymmetryCellMesh& cell) {
-  const RotationTable rotations(cell.fold);
-  std::vector<Point3> points;
-  std::vector<char> seen(cell.orbit_points.size(), 0);
-  for (std::size_t i = 0; i + 2 < cell.boundary.size(); i += 3) {
-    Point3 sum;
-    for (std::size_t j = i; j < i + 3; ++j) {
-      const OrbitVertex v = cell.nodes[static_cast<std::size_t>(cell.boundary[j])];
-      const Point3& p = cell.orbit_points[static_cast<std::size_t>(v.orbit)];
-      sum = sum + rotations.rotate(p, v.exponent);
-      char& known = seen[static_cast<std::size_t>(v.orbit)];
-      if (known == 0) points.push_back(p);
-      known = 1;
-    }
-    points.push_back((1.0 / 3) * sum);
-  }
-  return points;
-}
-
 }  // namespace
 
 Result<void> check_finished(const SymmetryCellMesh& cell,
@@ -80,7 +59,7 @@ Result<void> check_finished(const SymmetryCellMesh& cell,
                             const SectorSource& source,
                             ExecutionContext& context) {
   SYMCELL_TRY(check_cell(cell, boundary));
-  return source.check_boundary(boundary_points(cell), context);
+  return source.check_boundary(cell, context);
 }
 
 Result<CellSearch::Found> CellSearch::run() {

@@ -55,11 +55,11 @@ class SectorSource {
   // How long edges may be from place to place, in the local frame; null: no bounds but those for all.
   [[nodiscard]] virtual std::shared_ptr<const SizeField> size_field() const { return nullptr; }
 
-  // Looks at points of a finished mesh's boundary, in the local frame, with all of their copies:
-  // whether each is as near to the model's surface as the tolerance says. Where a mesh keeps the
+  // Looks at the boundary of a finished mesh, with all of its copies: whether nodes and middles of
+  // facets are as near to the model's surface as the tolerance says. Where a mesh keeps the
   // facets as given, which other checks see to, there is nothing to look at.
-  // Errors: kInternal, limits.
-  [[nodiscard]] virtual Result<void> check_boundary(std::span<const Point3> /*points*/,
+  // `cell`: of order 1.  Errors: kInternal, limits.
+  [[nodiscard]] virtual Result<void> check_boundary(const SymmetryCellMesh& /*cell*/,
                                                     ExecutionContext& /*context*/) const {
     return {};
   }

@@ -409,20 +409,42 @@ Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
   return near ? Result<void>{} : failure;
 }
 
-// What samples of the sector did not show may show here.
-Result<void> SurfaceSectorSource::check_boundary(std::span<const Point3> points,
+// What samples of the sector did not show may show here. The distance from a triangle is convex: a
+// facet whose nodes are all near one triangle is near it everywhere, and its middle is not looked at.
+Result<void> SurfaceSectorSource::check_boundary(const SymmetryCellMesh& cell,
                                                  ExecutionContext& context) const {
   const RotationTable rotations(symmetry_.fold);
+  std::vector<Point3> places(cell.nodes.size());
+  std::vector<std::int32_t> near(cell.nodes.size(), -1);  // item of the tree; -1: not looked for
   std::int32_t last = -1;
+  const auto too_far = [&](Point3 p) {
+    return fail(ErrorCode::kInternal,
+                "the mesh's boundary is farther from the surface than the tolerance of " +
+                    describe_rounded(allowed_) + " at " +
+                    describe_point(symmetry_.frame.to_model(p)));
+  };
   for (std::int32_t k = 0; k < symmetry_.fold; ++k) {
     SYMCELL_TRY(context.check());
-    for (const Point3& p : points) {
-      const Point3 copy = rotations.rotate(p, k);
-      if (tree_.within(copy, allowed_, last)) continue;
-      return fail(ErrorCode::kInternal,
-                  "the mesh's boundary is farther from the surface than the tolerance of " +
-                      describe_rounded(allowed_) + " at " +
-                      describe_point(symmetry_.frame.to_model(copy)));
+    std::fill(near.begin(), near.end(), -1);
+    for (std::size_t i = 0; i + 2 < cell.boundary.size(); i += 3) {
+      bool is_near_one = true;
+      Point3 sum;
+      for (std::size_t j = i; j < i + 3; ++j) {
+        const auto node = static_cast<std::size_t>(cell.boundary[j]);
+        if (near[node] < 0) {
+          const OrbitVertex v = cell.nodes[node];
+          places[node] = rotations.rotate(cell.orbit_points[static_cast<std::size_t>(v.orbit)],
+                                          rotations.reduce(std::int64_t{v.exponent} + k));
+          if (!tree_.within(places[node], allowed_, last)) return too_far(places[node]);
+          near[node] = last;
+        } else {
+          last = near[node];
+        }
+        sum = sum + places[node];
+        is_near_one = is_near_one && near[node] == near[static_cast<std::size_t>(cell.boundary[i])];
+      }
+      const Point3 middle = (1.0 / 3) * sum;
+      if (!is_near_one && !tree_.within(middle, allowed_, last)) return too_far(middle);
     }
   }
   return {};

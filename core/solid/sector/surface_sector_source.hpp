@@ -51,7 +51,7 @@ class SurfaceSectorSource final : public SectorSource {
   [[nodiscard]] bool may_change_surface() const override { return true; }
   [[nodiscard]] std::unique_ptr<SectorSource> with_surface(
       const IndexedSurface& boundary) const override;
-  [[nodiscard]] Result<void> check_boundary(std::span<const Point3> points,
+  [[nodiscard]] Result<void> check_boundary(const SymmetryCellMesh& cell,
                                             ExecutionContext& context) const override;
   [[nodiscard]] Result<void> label_boundary(SymmetryCellMesh& cell,
                                             ExecutionContext& context) const override;

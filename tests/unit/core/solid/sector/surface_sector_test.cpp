@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "core/solid/sector/symmetrise.hpp"
 #include "core/solid/surface/weld.hpp"
@@ -51,7 +53,22 @@ double prism_volume(const PrismShape& shape) {
   return shape.height * area * (1 - share * share);
 }
 
-TEST(SurfaceSectorSource, PointsOffTheSurfaceAreFound) {
+// The triangles of a surface as the boundary of a cell.
+SymmetryCellMesh boundary_of(const TriangleSurface& surface, const Symmetry& symmetry) {
+  SymmetryCellMesh cell;
+  cell.dimension = 3;
+  cell.fold = symmetry.fold;
+  for (const Point3 p : surface.vertices) {
+    cell.nodes.push_back({static_cast<std::int32_t>(cell.orbit_points.size()), 0});
+    cell.orbit_points.push_back(symmetry.frame.to_local(p));
+  }
+  for (const Triangle& t : surface.triangles) {
+    cell.boundary.insert(cell.boundary.end(), t.begin(), t.end());
+  }
+  return cell;
+}
+
+TEST(SurfaceSectorSource, FacetsOffTheSurfaceAreFound) {
   PrismShape shape;
   shape.fold = 5;
   const TriangleSurface surface = asymmetric_prism(shape, 7);
@@ -60,16 +77,46 @@ TEST(SurfaceSectorSource, PointsOffTheSurfaceAreFound) {
   ASSERT_TRUE(source) << source.error().message;
   const Symmetry& symmetry = (*source)->symmetry();
   const double tolerance = kSurfaceSymmetryToleranceRel * symmetry.diameter;
-  std::vector<Point3> points;
-  for (const Point3 p : surface.vertices) points.push_back(symmetry.frame.to_local(p));
-  EXPECT_TRUE((*source)->check_boundary(points, context));
+  SymmetryCellMesh cell = boundary_of(surface, symmetry);
+  EXPECT_TRUE((*source)->check_boundary(cell, context));
   // The end faces are the lowest and the highest of all.
-  const auto top = std::max_element(points.begin(), points.end(),
+  const auto top = std::max_element(cell.orbit_points.begin(), cell.orbit_points.end(),
                                     [](const Point3& p, const Point3& q) { return p.z < q.z; });
   top->z += 0.9 * tolerance;
-  EXPECT_TRUE((*source)->check_boundary(points, context));
+  EXPECT_TRUE((*source)->check_boundary(cell, context));
   top->z += 0.2 * tolerance;
-  EXPECT_EQ((*source)->check_boundary(points, context).error().code, ErrorCode::kInternal);
+  EXPECT_EQ((*source)->check_boundary(cell, context).error().code, ErrorCode::kInternal);
+}
+
+TEST(SurfaceSectorSource, FacetsAcrossTheSolidAreFound) {
+  PrismShape shape;
+  shape.fold = 5;
+  const TriangleSurface surface = asymmetric_prism(shape, 7);
+  ExecutionContext context;
+  const auto source = symmetrise_surface(surface, with_fold(5), context);
+  ASSERT_TRUE(source) << source.error().message;
+  SymmetryCellMesh cell = boundary_of(surface, (*source)->symmetry());
+  ASSERT_TRUE((*source)->check_boundary(cell, context));
+  // Its nodes are on the surface, each on another triangle: the first at the bottom, the others at
+  // the top, on other sides of the axis.
+  const auto at_angle = [&](double z, double angle) {
+    std::int32_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < cell.orbit_points.size(); ++i) {
+      const double off = distance(
+          cell.orbit_points[i], {shape.outer * std::cos(angle), shape.outer * std::sin(angle), z});
+      if (off >= least) continue;
+      least = off;
+      best = static_cast<std::int32_t>(i);
+    }
+    return best;
+  };
+  const double high =
+      std::max_element(cell.orbit_points.begin(), cell.orbit_points.end(), [](Point3 p, Point3 q) {
+        return p.z < q.z;
+      })->z;
+  cell.boundary = {at_angle(high - shape.height, 0), at_angle(high, 2), at_angle(high, 4)};
+  EXPECT_EQ((*source)->check_boundary(cell, context).error().code, ErrorCode::kInternal);
 }
 
 // Sectors of another surface are held against the input, not against what they are cut from.
