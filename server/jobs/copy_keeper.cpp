@@ -10,6 +10,7 @@ namespace {
 
 // What the database grows by at most for copies, more or less.
 constexpr std::uint64_t kManyBytes = std::uint64_t{32} << 20U;
+
 // While the service runs a job's folder may lack its name still, and must not get a second one.
 void settle_if_staged(const JobFiles& files, const std::string& id) {
   try {

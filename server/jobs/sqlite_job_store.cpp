@@ -198,7 +198,6 @@ struct SqliteJobStore::Impl {
   std::mutex counting;  // guards `totals`
   StoreTotals totals;
 
-  std::unique_ptr<SqliteLog> wal;
   std::timed_mutex writing;  // guards `database`
   SqliteConnection database;
   std::mutex reading;  // guards `reader`
@@ -237,6 +236,8 @@ struct SqliteJobStore::Impl {
     if (!job) throw std::runtime_error("an idempotency key without its job");
     return InsertOutcome{same ? InsertResult::kReplayed : InsertResult::kConflict, *job};
   }
+
+  std::unique_ptr<SqliteLog> wal;  // last: it uses `database` until it goes
 };
 
 SqliteJobStore::SqliteJobStore(const std::filesystem::path& file,
