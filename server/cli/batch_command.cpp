@@ -9,7 +9,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -17,7 +16,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "api/formats/model_format.hpp"
@@ -75,14 +76,14 @@ class HeldSignals {
     for (const int signal : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&held_, signal);
     // Whoever ignores it has no word of children, and this process may have been made to.
     std::signal(SIGCHLD, SIG_DFL);
-    ::sigprocmask(SIG_BLOCK, &held_, &before_);
+    ::pthread_sigmask(SIG_BLOCK, &held_, &before_);
   }
   ~HeldSignals() {
     // Some send two at once; the second must not end the program before it has told what was done.
     const timespec at_once{};
     while (::sigtimedwait(&held_, nullptr, &at_once) > 0) {
     }
-    ::sigprocmask(SIG_SETMASK, &before_, nullptr);
+    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
   }
   HeldSignals(const HeldSignals&) = delete;
   HeldSignals& operator=(const HeldSignals&) = delete;
@@ -93,7 +94,7 @@ class HeldSignals {
     return signal == SIGINT || signal == SIGTERM;
   }
   // For a child, which has them as the program had.
-  void release() const { ::sigprocmask(SIG_SETMASK, &before_, nullptr); }
+  void release() const { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
  private:
   sigset_t held_{};
@@ -179,7 +180,7 @@ class Batch {
   }
 
   // Returns the process; -1: none could be had.
-  pid_t start(const Task& task, const HeldSignals& signals) const {
+  [[nodiscard]] pid_t start(const Task& task, const HeldSignals& signals) const {
     std::vector<std::string> words{"symcell",
                                    "mesh",
                                    fs::absolute(task.model).string(),
@@ -197,9 +198,11 @@ class Batch {
     for (const auto& [name, value] : arguments_.flags.given()) {
       std::string flag = "--" + name;
       std::ranges::replace(flag, '_', '-');
-      words.push_back(value.empty() ? flag : flag + "=" + value);
+      if (!value.empty()) flag.append("=").append(value);
+      words.push_back(std::move(flag));
     }
     std::vector<char*> argv;
+    argv.reserve(words.size() + 1);
     for (std::string& w : words) argv.push_back(w.data());
     argv.push_back(nullptr);
     std::fflush(nullptr);
@@ -324,12 +327,13 @@ class Batch {
     Result<AtomicOutput> file = AtomicOutput::open(path);
     if (!file) return error_of(file);
     if (!file->sink()(text)) {
-      return fail(ErrorCode::kWriteFailed, "cannot write " + path + ": " + std::strerror(errno));
+      return fail(ErrorCode::kWriteFailed,
+                  "cannot write " + path + ": " + std::generic_category().message(errno));
     }
     return file->commit();
   }
 
-  Result<void> write_summaries() const {
+  [[nodiscard]] Result<void> write_summaries() const {
     if (!arguments_.summary.empty()) {
       Json all = Json::array();
       for (const Task& t : tasks_) all.push_back(report_to_json(t.report));

@@ -2,8 +2,8 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <memory>
+#include <system_error>
 
 #include "api/formats/cell_input.hpp"
 #include "api/formats/gzip.hpp"
@@ -24,7 +24,8 @@ struct CloseFile {
 
 Result<std::string> read_up_to(const std::string& path, std::size_t most) {
   const auto unreadable = [&] {
-    return fail(ErrorCode::kUnreadable, "cannot read " + path + ": " + std::strerror(errno));
+    return fail(ErrorCode::kUnreadable,
+                "cannot read " + path + ": " + std::generic_category().message(errno));
   };
   const std::unique_ptr<std::FILE, CloseFile> file(path == "-" ? stdin
                                                                : std::fopen(path.c_str(), "rb"));
