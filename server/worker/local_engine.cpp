@@ -16,7 +16,7 @@ namespace {
 
 Result<void> write_cell(const SymmetryCellMesh& mesh, const std::filesystem::path& path) {
   FileWriter file(path);
-  const auto written = write_cell_archive(mesh, [&](std::string_view piece) {
+  auto written = write_cell_archive(mesh, [&](std::string_view piece) {
     file.write(piece);
     return true;
   });
@@ -111,11 +111,10 @@ Result<void> LocalEngine::draw(const std::filesystem::path& path,
     if (names_faces(error.code)) at_fault.assign(error.elements.begin(), error.elements.end());
   }
   FileWriter file(picture);
-  const auto drawn =
-      write_model_glb(*model, at_fault, std::move(extras), [&](std::string_view piece) {
-        file.write(piece);
-        return true;
-      });
+  auto drawn = write_model_glb(*model, at_fault, std::move(extras), [&](std::string_view piece) {
+    file.write(piece);
+    return true;
+  });
   if (drawn) file.keep();
   return drawn;
 }

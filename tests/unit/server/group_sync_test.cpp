@@ -52,6 +52,7 @@ TEST(GroupSyncTest, WhoComesWhileTheDiskIsAtWorkWaitsForTheNextTimeAndAllOfThemF
   std::atomic<int> here{0};
   std::atomic<int> back{0};
   std::vector<std::thread> others;
+  others.reserve(kOthers);
   for (int i = 0; i < kOthers; ++i) {
     others.emplace_back([&] {
       sync.committed();
