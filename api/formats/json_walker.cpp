@@ -7,7 +7,6 @@
 namespace symcell::internal {
 namespace {
 
-constexpr std::size_t kMostDepth = 64;
 constexpr JsonPlace kIgnoredPlace{0, JsonShape::kIgnored, ""};
 
 // Walks over the text and leaves its position where the walker can see it.
@@ -113,9 +112,9 @@ bool JsonWalker::open(JsonShape shape, const char* what) {
     if (other == nullptr) misplaced(what);
     place = other != nullptr ? other : &kIgnoredPlace;
   }
-  if (frames_.size() == kMostDepth) {
+  if (frames_.size() == kMostJsonDepth) {
     fatal_ = Error{ErrorCode::kJsonTooDeep,
-                   "more than " + std::to_string(kMostDepth) + " nested lists or objects" +
+                   "more than " + std::to_string(kMostJsonDepth) + " nested lists or objects" +
                        where() + "; no model needs that",
                    {},
                    {}};

@@ -15,6 +15,9 @@
 
 namespace symcell::internal {
 
+// Lists and objects within one another; no model needs more than a few.
+inline constexpr std::size_t kMostJsonDepth = 64;
+
 enum class JsonShape : std::uint8_t { kObject, kList, kNumber, kNumberOrNull, kText, kIgnored };
 
 // What belongs at a place of a model's JSON. Ids are the reader's own, below 32.

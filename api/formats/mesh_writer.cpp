@@ -52,6 +52,13 @@ void write_json(MeshStream& mesh, PackedReals packed, ByteWriter& out) {
 
 }  // namespace
 
+std::optional<VtuEncoding> vtu_encoding_from_name(std::string_view name) {
+  if (name == "raw") return VtuEncoding::kAppendedRaw;
+  if (name == "zlib") return VtuEncoding::kAppendedZlib;
+  if (name == "ascii") return VtuEncoding::kAscii;
+  return std::nullopt;
+}
+
 std::optional<PackedReals> packed_reals_from_name(std::string_view name) {
   if (name == "false") return PackedReals::kNone;
   if (name == "true") return PackedReals::kFloat32;

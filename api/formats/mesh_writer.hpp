@@ -30,6 +30,8 @@ enum class MeshFormat : std::uint8_t {
 enum class MeshPart : std::uint8_t { kCell, kFull };
 
 enum class VtuEncoding : std::uint8_t { kAppendedRaw, kAppendedZlib, kAscii };
+// "raw", "zlib", "ascii".
+[[nodiscard]] std::optional<VtuEncoding> vtu_encoding_from_name(std::string_view name);
 
 // Of JSON: numbers as text, or arrays in base64 whose coordinates have so many bits.
 enum class PackedReals : std::uint8_t { kNone, kFloat32, kFloat64 };

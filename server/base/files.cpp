@@ -146,12 +146,14 @@ MappedFile::~MappedFile() {
 }
 
 void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to) {
-  {
-    const Descriptor file(from, O_RDONLY | O_NOFOLLOW);
-    if (::fsync(file.get()) != 0) throw_errno("cannot synchronise", from);
-  }
+  sync_file(from);
   std::filesystem::rename(from, to);
   sync_directory(to.parent_path());
+}
+
+void sync_file(const std::filesystem::path& file) {
+  const Descriptor opened(file, O_RDONLY | O_NOFOLLOW);
+  if (::fsync(opened.get()) != 0) throw_errno("cannot synchronise", file);
 }
 
 void sync_directory(const std::filesystem::path& directory) {

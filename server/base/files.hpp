@@ -81,6 +81,8 @@ class MappedFile {
 
 // Makes a finished file durable under a new name in the same file system.
 void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to);
+// Makes the contents of a file durable, which is no link.
+void sync_file(const std::filesystem::path& file);
 // Makes names created in or removed from a folder durable.
 void sync_directory(const std::filesystem::path& directory);
 

@@ -5,8 +5,8 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace symcell::cli {
@@ -34,7 +34,8 @@ AtomicOutput::~AtomicOutput() {
 }
 
 Failure AtomicOutput::failure() const {
-  return fail(ErrorCode::kWriteFailed, "cannot write " + path_ + ": " + std::strerror(errno));
+  return fail(ErrorCode::kWriteFailed,
+              "cannot write " + path_ + ": " + std::generic_category().message(errno));
 }
 
 Result<AtomicOutput> AtomicOutput::open(const std::string& path) {

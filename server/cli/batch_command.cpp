@@ -9,7 +9,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -17,11 +16,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "api/formats/model_format.hpp"
 #include "api/problem.hpp"
+#include "server/cli/atomic_output.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/mesh_report.hpp"
 #include "server/cli/option_flags.hpp"
@@ -65,30 +67,38 @@ struct Task {
   MeshReport report;
 };
 
-volatile std::sig_atomic_t stopped = 0;
-void stop(int) {
-  stopped = 1;
-}
-
-// Ctrl-C ends the batch: the children get it, too, and no more are started.
-class StopOnSignals {
+// SIGINT, SIGTERM and word of children, held back while this lives and taken one by one: none can come between a
+// look at what there is and the wait for more.
+class HeldSignals {
  public:
-  StopOnSignals() {
-    struct sigaction action {};
-    action.sa_handler = stop;
-    sigaction(SIGINT, &action, &int_);
-    sigaction(SIGTERM, &action, &term_);
+  HeldSignals() {
+    sigemptyset(&held_);
+    for (const int signal : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&held_, signal);
+    // Whoever ignores it has no word of children, and this process may have been made to.
+    std::signal(SIGCHLD, SIG_DFL);
+    ::pthread_sigmask(SIG_BLOCK, &held_, &before_);
   }
-  ~StopOnSignals() {
-    sigaction(SIGINT, &int_, nullptr);
-    sigaction(SIGTERM, &term_, nullptr);
+  ~HeldSignals() {
+    // Some send two at once; the second must not end the program before it has told what was done.
+    const timespec at_once{};
+    while (::sigtimedwait(&held_, nullptr, &at_once) > 0) {
+    }
+    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
   }
-  StopOnSignals(const StopOnSignals&) = delete;
-  StopOnSignals& operator=(const StopOnSignals&) = delete;
+  HeldSignals(const HeldSignals&) = delete;
+  HeldSignals& operator=(const HeldSignals&) = delete;
+
+  // Waits for one of them; true: the batch is to stop.
+  [[nodiscard]] bool wait() const {
+    const int signal = ::sigwaitinfo(&held_, nullptr);
+    return signal == SIGINT || signal == SIGTERM;
+  }
+  // For a child, which has them as the program had.
+  void release() const { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
  private:
-  struct sigaction int_ {};
-  struct sigaction term_ {};
+  sigset_t held_{};
+  sigset_t before_{};
 };
 
 class Batch {
@@ -111,13 +121,18 @@ class Batch {
     const auto bad =
         std::ranges::count_if(tasks_, [](const Task& t) { return t.report.error.has_value(); });
     std::printf("%zu models, %td without an acceptable mesh\n", tasks_.size(), bad);
-    if (stopped != 0) return fail(ErrorCode::kCancelled, "stopped by a signal");
+    if (stopped_) return fail(ErrorCode::kCancelled, "stopped by a signal");
     return bad == 0;
   }
 
  private:
   Result<void> find_models() {
     std::error_code error;
+    if (fs::equivalent(arguments_.folder, arguments_.out, error)) {
+      return fail(ErrorCode::kBadOption,
+                  "--out must be another folder than that of the models: reports and meshes would "
+                  "be taken for models the next time");
+    }
     const auto add = [this](const fs::directory_entry& entry) {
       if (!entry.is_regular_file() || !model_format_from_name(entry.path().string())) return;
       tasks_.push_back({entry.path(), {}, {}});
@@ -125,6 +140,11 @@ class Batch {
     if (arguments_.recursive) {
       for (fs::recursive_directory_iterator it(arguments_.folder, error), end; !error && it != end;
            it.increment(error)) {
+        // What earlier batches have left there.
+        std::error_code not_there;
+        if (it->is_directory(not_there) && fs::equivalent(it->path(), arguments_.out, not_there)) {
+          it.disable_recursion_pending();
+        }
         add(*it);
       }
     } else {
@@ -160,7 +180,7 @@ class Batch {
   }
 
   // Returns the process; -1: none could be had.
-  pid_t start(const Task& task) const {
+  [[nodiscard]] pid_t start(const Task& task, const HeldSignals& signals) const {
     std::vector<std::string> words{"symcell",
                                    "mesh",
                                    fs::absolute(task.model).string(),
@@ -178,14 +198,17 @@ class Batch {
     for (const auto& [name, value] : arguments_.flags.given()) {
       std::string flag = "--" + name;
       std::ranges::replace(flag, '_', '-');
-      words.push_back(value.empty() ? flag : flag + "=" + value);
+      if (!value.empty()) flag.append("=").append(value);
+      words.push_back(std::move(flag));
     }
     std::vector<char*> argv;
+    argv.reserve(words.size() + 1);
     for (std::string& w : words) argv.push_back(w.data());
     argv.push_back(nullptr);
     std::fflush(nullptr);
     const pid_t child = ::fork();
     if (child != 0) return child;
+    signals.release();
     const int null = ::open("/dev/null", O_RDWR);
     // What it has to say stands in its report.
     ::dup2(null, STDOUT_FILENO);
@@ -194,49 +217,56 @@ class Batch {
     ::_exit(127);
   }
 
+  // Ctrl-C ends the batch: the children get it, too, and no more are started.
   void run_all() {
-    const StopOnSignals guard;
-    const unsigned workers = arguments_.workers > 0
-                                 ? arguments_.workers
-                                 : std::max(1U, std::thread::hardware_concurrency());
+    const HeldSignals signals;
+    const std::size_t workers = arguments_.workers > 0
+                                    ? arguments_.workers
+                                    : std::max(1U, std::thread::hardware_concurrency());
+    begin_.resize(tasks_.size());
     std::map<pid_t, std::size_t> running;
     std::size_t next = 0;
-    while (next < tasks_.size() || !running.empty()) {
-      while (stopped == 0 && next < tasks_.size() && running.size() < workers) {
-        const std::size_t task = next++;
-        begin_.resize(tasks_.size());
-        begin_[task] = std::chrono::steady_clock::now();
-        // Of an earlier run.
-        std::error_code ignored;
-        fs::remove(output(tasks_[task], ".report.json"), ignored);
-        const pid_t child = start(tasks_[task]);
-        if (child < 0) {
-          tasks_[task].report.error =
-              Error{ErrorCode::kInternal, "a process could not be started", {}, {}};
-          print(tasks_[task]);
-          continue;
-        }
-        running[child] = task;
+    while (true) {
+      reap(running);
+      while (!stopped_ && next < tasks_.size() && running.size() < workers) {
+        begin(next++, signals, running);
       }
-      if (stopped != 0) {
-        for (; next < tasks_.size(); ++next) {
-          tasks_[next].report.error = Error{ErrorCode::kCancelled, "not begun", {}, {}};
-        }
-        for (const auto& [child, task] : running) ::kill(child, SIGTERM);
-      }
-      if (running.empty()) continue;
-      int status = 0;
-      const pid_t ended = ::waitpid(-1, &status, 0);
-      if (ended < 0 && errno == EINTR) continue;
+      if (running.empty()) break;
+      if (!signals.wait()) continue;
+      stopped_ = true;
+      for (const auto& [child, task] : running) ::kill(child, SIGTERM);
+    }
+    for (; next < tasks_.size(); ++next) {
+      tasks_[next].report.error = Error{ErrorCode::kCancelled, "not begun", {}, {}};
+    }
+  }
+
+  void begin(std::size_t task, const HeldSignals& signals, std::map<pid_t, std::size_t>& running) {
+    begin_[task] = std::chrono::steady_clock::now();
+    // Of an earlier run.
+    std::error_code ignored;
+    fs::remove(output(tasks_[task], ".report.json"), ignored);
+    const pid_t child = start(tasks_[task], signals);
+    if (child >= 0) {
+      running[child] = task;
+      return;
+    }
+    tasks_[task].report.error =
+        Error{ErrorCode::kInternal, "a process could not be started", {}, {}};
+    print(tasks_[task]);
+  }
+
+  // Takes in what those have to tell that have ended; one word may stand for several.
+  void reap(std::map<pid_t, std::size_t>& running) {
+    int status = 0;
+    for (pid_t ended = 0; (ended = ::waitpid(-1, &status, WNOHANG)) > 0;) {
       const auto found = running.find(ended);
-      if (found == running.end()) {
-        if (ended < 0) break;
-        continue;
-      }
-      read_report(tasks_[found->second]);
+      if (found == running.end()) continue;
+      Task& task = tasks_[found->second];
+      read_report(task);
       const auto took = std::chrono::steady_clock::now() - begin_[found->second];
-      tasks_[found->second].report.seconds = std::chrono::duration<double>(took).count();
-      print(tasks_[found->second]);
+      task.report.seconds = std::chrono::duration<double>(took).count();
+      print(task);
       running.erase(found);
     }
   }
@@ -294,14 +324,16 @@ class Batch {
   }
 
   static Result<void> write_text(const std::string& path, const std::string& text) {
-    std::ofstream file(path, std::ios::binary);
-    file << text;
-    file.flush();
-    if (file) return {};
-    return fail(ErrorCode::kWriteFailed, "cannot write " + path + ": " + std::strerror(errno));
+    Result<AtomicOutput> file = AtomicOutput::open(path);
+    if (!file) return error_of(file);
+    if (!file->sink()(text)) {
+      return fail(ErrorCode::kWriteFailed,
+                  "cannot write " + path + ": " + std::generic_category().message(errno));
+    }
+    return file->commit();
   }
 
-  Result<void> write_summaries() const {
+  [[nodiscard]] Result<void> write_summaries() const {
     if (!arguments_.summary.empty()) {
       Json all = Json::array();
       for (const Task& t : tasks_) all.push_back(report_to_json(t.report));
@@ -316,7 +348,8 @@ class Batch {
 
   const BatchArguments& arguments_;
   std::vector<Task> tasks_;
-  std::vector<std::chrono::steady_clock::time_point> begin_;
+  std::vector<std::chrono::steady_clock::time_point> begin_;  // of each task
+  bool stopped_ = false;
 };
 
 }  // namespace

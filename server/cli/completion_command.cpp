@@ -32,7 +32,9 @@ std::vector<std::string> flags_of(const CLI::App& command) {
 
 // Names of values, as "none|safe|all": words to choose from.
 std::vector<std::string> choices_of(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
+  // The parser's own words for a check of the value follow.
+  const std::string named = option.get_type_name();
+  const std::string type = named.substr(0, named.find(":{"));
   std::vector<std::string> words;
   if (type.find('|') == std::string::npos) return words;
   for (std::size_t begin = 0; begin <= type.size();) {
@@ -57,8 +59,12 @@ std::string bash_script(const CLI::App& app) {
     for (const CLI::Option* option : command->get_options()) {
       const std::vector<std::string> choices = choices_of(*option);
       if (choices.empty()) continue;
-      for (const std::string& name : option->get_lnames()) {
-        values += "    " + command->get_name() + ":--" + name + ") words=\"" + joined(choices) +
+      std::vector<std::string> befores;
+      for (const std::string& name : option->get_lnames()) befores.push_back("--" + name);
+      // What stands by itself comes first, after the command's name.
+      if (option->get_positional()) befores.push_back(command->get_name());
+      for (const std::string& before : befores) {
+        values += "    " + command->get_name() + ":" + before + ") words=\"" + joined(choices) +
                   "\" ;;\n";
       }
     }
@@ -106,6 +112,11 @@ std::string fish_script(const CLI::App& app) {
     script += "complete -c symcell -n __fish_use_subcommand -a " + command->get_name() + " -d " +
               fish_quoted(command->get_description()) + "\n";
     for (const CLI::Option* option : command->get_options()) {
+      const std::string choices = joined(choices_of(*option));
+      if (option->get_positional() && !choices.empty()) {
+        script += "complete -c symcell -n '__fish_seen_subcommand_from " + command->get_name() +
+                  "' -f -a '" + choices + "'\n";
+      }
       for (const std::string& name : option->get_lnames()) {
         script += "complete -c symcell -n '__fish_seen_subcommand_from " + command->get_name() +
                   "' -l " + name + (option->get_expected_min() > 0 ? " -r" : "") + " -d " +
@@ -178,6 +189,7 @@ void add_completion_command(CLI::App& app, int& exit_code) {
   const auto shell = std::make_shared<std::string>();
   command->add_option("SHELL", *shell, "bash, zsh, fish; man: the manual page, for man -l")
       ->required()
+      ->type_name("bash|zsh|fish|man")
       ->option_text(" ")
       ->check(CLI::IsMember({"bash", "zsh", "fish", "man"}));
   command->footer(R"(Examples:

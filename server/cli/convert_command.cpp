@@ -1,12 +1,18 @@
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
-#include "api/formats/cell_input.hpp"
+#include "api/formats/mesh_writer.hpp"
+#include "core/base/execution_context.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/mesh_outputs.hpp"
 #include "server/cli/model_input.hpp"
+#include "server/cli/option_flags.hpp"
 #include "server/cli/report_error.hpp"
+#include "server/cli/supervised_run.hpp"
 
 namespace symcell::cli {
 namespace {
@@ -25,29 +31,44 @@ Examples:
 struct ConvertArguments {
   std::string input;
   OutputArguments meshes;
+  std::string memory_limit;
   bool json_errors = false;
 };
+
+// In a process of its own.
+Result<std::string> write_outputs(const ConvertArguments& arguments,
+                                  std::vector<MeshOutput>& outputs,
+                                  const ExecutionContext& context) {
+  const Result<SymmetryCellMesh> cell = read_cell_file(arguments.input);
+  if (!cell) return error_of(cell);
+  for (const MeshOutput& output : outputs) {
+    SYMCELL_TRY(check_mesh_output(*cell, output.part, output.format, output.options));
+  }
+  for (MeshOutput& output : outputs) {
+    const Sink file = output.file.sink();
+    const Sink sink = [&](std::string_view piece) { return !context.cancelled() && file(piece); };
+    const auto written = write_mesh(*cell, output.part, output.format, output.options, sink);
+    if (!written && context.cancelled()) {
+      return fail(ErrorCode::kCancelled, "cancelled while writing; no output was left");
+    }
+    if (!written) return error_of(written);
+  }
+  return std::string();
+}
 
 Result<void> convert(const ConvertArguments& arguments) {
   if (arguments.meshes.cell.empty() && arguments.meshes.full.empty()) {
     return fail(ErrorCode::kBadOption, "nothing to write: give --cell, --full or both");
   }
-  const Result<std::string> bytes = read_mesh_input(arguments.input);
-  if (!bytes) return error_of(bytes);
-  auto cell = read_cell(*bytes);
-  if (!cell) {
-    cell.error().message = arguments.input + ": " + cell.error().message;
-    return error_of(cell);
-  }
+  const Result<std::uint64_t> memory_bytes = memory_limit_bytes(arguments.memory_limit);
+  if (!memory_bytes) return error_of(memory_bytes);
   Result<std::vector<MeshOutput>> outputs = open_outputs(arguments.meshes);
   if (!outputs) return error_of(outputs);
-  for (MeshOutput& output : *outputs) {
-    SYMCELL_TRY(check_mesh_output(*cell, output.part, output.format, output.options));
-  }
-  for (MeshOutput& output : *outputs) {
-    SYMCELL_TRY(write_mesh(*cell, output.part, output.format, output.options, output.file.sink()));
-    SYMCELL_TRY(output.file.commit());
-  }
+  const auto written = run_supervised(
+      [&](ExecutionContext& context) { return write_outputs(arguments, *outputs, context); },
+      {.memory_bytes = *memory_bytes});
+  if (!written) return error_of(written);
+  for (MeshOutput& output : *outputs) SYMCELL_TRY(output.file.commit());
   return {};
 }
 
@@ -61,6 +82,7 @@ void add_convert_command(CLI::App& app, int& exit_code) {
       ->required()
       ->option_text(" ");
   add_output_flags(*command, arguments->meshes);
+  add_memory_limit(*command, arguments->memory_limit);
   command->add_flag("--json-errors", arguments->json_errors,
                     "errors as problem documents on standard error");
   command->footer(kExamples);

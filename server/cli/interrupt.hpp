@@ -1,4 +1,4 @@
-// SIGINT and SIGTERM cancel the running call; a second one ends the program as usual.
+// SIGINT and SIGTERM cancel the running call, however many come.
 #pragma once
 
 #include "core/base/execution_context.hpp"

@@ -141,10 +141,12 @@ class MeshRun {
   Result<std::string> mesh_and_write() {
     auto outcome = mesh();
     if (!outcome) return error_of(outcome);
-    const auto judged =
-        judge(options_.fail_on, statistics_to_json(outcome->statistics, options_, kind_));
-    // What is not acceptable is left nowhere; its statistics are.
-    if (!check_gates(judged)) meshes_.clear();
+    if (!options_.fail_on.empty()) {
+      const auto judged =
+          judge(options_.fail_on, statistics_to_json(outcome->statistics, options_, kind_));
+      // What is not acceptable is left nowhere; its statistics are.
+      if (!check_gates(judged)) meshes_.clear();
+    }
     auto done = write(*outcome);
     // A sink that stops for a signal looks like a failed write.
     if (!done && context_->cancelled()) {

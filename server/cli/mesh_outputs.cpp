@@ -62,14 +62,14 @@ Result<WriteOptions> write_options(const OutputArguments& arguments) {
                 "--packed must be true, exact or false, not " + arguments.packed);
   }
   options.packed = *packed;
-  const std::string& encoding = arguments.encoding;
-  if (encoding == "zlib") options.vtu_encoding = VtuEncoding::kAppendedZlib;
-  if (encoding == "ascii") {
-    options.vtu_encoding = VtuEncoding::kAscii;
-    options.stl_ascii = true;
+  const auto encoding = vtu_encoding_from_name(arguments.encoding);
+  if (!encoding) {
+    return fail(ErrorCode::kBadOption,
+                "--encoding must be raw, zlib or ascii, not " + arguments.encoding);
   }
-  if (encoding == "raw" || encoding == "zlib" || encoding == "ascii") return options;
-  return fail(ErrorCode::kBadOption, "--encoding must be raw, zlib or ascii, not " + encoding);
+  options.vtu_encoding = *encoding;
+  options.stl_ascii = *encoding == VtuEncoding::kAscii;
+  return options;
 }
 
 Result<std::vector<MeshOutput>> open_outputs(const OutputArguments& arguments) {

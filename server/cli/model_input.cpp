@@ -2,9 +2,10 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <memory>
+#include <system_error>
 
+#include "api/formats/cell_input.hpp"
 #include "api/formats/gzip.hpp"
 #include "api/formats/model_reader.hpp"
 #include "api/formats/vtu_reader.hpp"
@@ -23,7 +24,8 @@ struct CloseFile {
 
 Result<std::string> read_up_to(const std::string& path, std::size_t most) {
   const auto unreadable = [&] {
-    return fail(ErrorCode::kUnreadable, "cannot read " + path + ": " + std::strerror(errno));
+    return fail(ErrorCode::kUnreadable,
+                "cannot read " + path + ": " + std::generic_category().message(errno));
   };
   const std::unique_ptr<std::FILE, CloseFile> file(path == "-" ? stdin
                                                                : std::fopen(path.c_str(), "rb"));
@@ -58,6 +60,14 @@ Result<std::string> read_mesh_input(const std::string& path) {
   return read_up_to(path, kMaxMeshBytes);
 }
 
+Result<SymmetryCellMesh> read_cell_file(const std::string& path) {
+  const Result<std::string> bytes = read_mesh_input(path);
+  if (!bytes) return error_of(bytes);
+  auto cell = read_cell(*bytes);
+  if (!cell) cell.error().message = path + ": " + cell.error().message;
+  return cell;
+}
+
 Result<MeshData> read_mesh_file(const std::string& path) {
   const Result<std::string> bytes = read_mesh_input(path);
   if (!bytes) return error_of(bytes);
@@ -67,7 +77,13 @@ Result<MeshData> read_mesh_file(const std::string& path) {
     if (!text) return error_of(text);
     return read_vtu(*text);
   }();
-  if (!mesh) mesh.error().message = path + ": " + mesh.error().message;
+  if (mesh) return mesh;
+  Error& error = mesh.error();
+  error.message = path + ": " + error.message;
+  if (error.code == ErrorCode::kUnknownFormat) {
+    error.message += "; meshes are checked as VTU, which \"symcell convert " + path +
+                     " --cell c.vtu\" makes of a cell in JSON or of a job";
+  }
   return mesh;
 }
 

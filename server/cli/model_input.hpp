@@ -5,6 +5,7 @@
 
 #include "api/formats/model_reader.hpp"
 #include "core/base/error.hpp"
+#include "core/cell/symmetry_cell_mesh.hpp"
 #include "core/model/model.hpp"
 #include "core/verify/mesh_data.hpp"
 
@@ -19,6 +20,9 @@ namespace symcell::cli {
 
 // The same of a file of a mesh, which may be larger than a model.
 [[nodiscard]] Result<std::string> read_mesh_input(const std::string& path);
+
+// A cell as symcell wrote it, JSON, VTU or a job's.
+[[nodiscard]] Result<SymmetryCellMesh> read_cell_file(const std::string& path);
 
 // A VTU mesh, also gzip'd.
 [[nodiscard]] Result<MeshData> read_mesh_file(const std::string& path);

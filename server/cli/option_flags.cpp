@@ -2,10 +2,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <string_view>
 
 #include "api/schema/options.hpp"
 
 namespace symcell::cli {
+namespace {
+constexpr std::string_view kMemoryLimit = "memory_limit";
+}  // namespace
+
 void OptionFlags::add_to(CLI::App& command) {
   for (const OptionInfo& info : mesh_option_table()) {
     const std::string name(info.name);
@@ -35,6 +40,19 @@ void OptionFlags::add_to(CLI::App& command) {
 
 Result<MeshOptions> OptionFlags::options() const {
   return options_from_texts(given_);
+}
+
+void add_memory_limit(CLI::App& command, std::string& target) {
+  const auto row = std::ranges::find(mesh_option_table(), kMemoryLimit, &OptionInfo::name);
+  command.add_option("--memory-limit", target, std::string(row->help))
+      ->type_name(std::string(row->metavar));
+}
+
+Result<std::uint64_t> memory_limit_bytes(const std::string& given) {
+  if (given.empty()) return 0;
+  const Result<MeshOptions> options = options_from_texts({{std::string(kMemoryLimit), given}});
+  if (!options) return error_of(options);
+  return options->memory_limit_bytes;
 }
 
 }  // namespace symcell::cli

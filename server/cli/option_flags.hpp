@@ -1,6 +1,7 @@
 // The meshing options as command-line flags, from the table that JSON and query strings share.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
@@ -29,5 +30,10 @@ class OptionFlags {
  private:
   std::vector<std::pair<std::string, std::string>> given_;
 };
+
+// The memory limit alone, of commands that mesh nothing.
+void add_memory_limit(CLI::App& command, std::string& target);
+// 0: none. Errors: kBadOption.
+[[nodiscard]] Result<std::uint64_t> memory_limit_bytes(const std::string& given);
 
 }  // namespace symcell::cli

@@ -19,9 +19,9 @@ struct SupervisedSettings {
 };
 
 // `work` runs in a fork of this process: it may write to files and standard output, all else that
-// it changes stays there, but for the text that it returns. SIGINT and SIGTERM cancel its context; a second one kills. Requires: this
-// process has one thread. Errors: those of `work`; kWorkerCrashed, kMemoryLimit, kTimeLimit,
-// kCancelled if it had to be ended or ended by itself.
+// it changes stays there, but for the text that it returns. SIGINT and SIGTERM cancel its context, and kill
+// it if it does not end within a second. Requires: this process has one thread. Errors: those of `work`;
+// kWorkerCrashed, kMemoryLimit, kTimeLimit, kCancelled if it had to be ended or ended by itself.
 using SupervisedWork = std::function<Result<std::string>(ExecutionContext&)>;
 [[nodiscard]] Result<std::string> run_supervised(const SupervisedWork& work,
                                                  const SupervisedSettings& settings);

@@ -5,15 +5,20 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "api/formats/cell_input.hpp"
+#include "api/formats/mesh_writer.hpp"
 #include "api/formats/nodal_results.hpp"
+#include "core/base/execution_context.hpp"
 #include "core/model/describe.hpp"
 #include "server/cli/atomic_output.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/model_input.hpp"
+#include "server/cli/option_flags.hpp"
 #include "server/cli/report_error.hpp"
+#include "server/cli/supervised_run.hpp"
 
 namespace symcell::cli {
 namespace {
@@ -45,6 +50,7 @@ struct TransferArguments {
   std::optional<std::int32_t> nodal_diameter;
   double phase_deg = 0;
   std::string encoding = "raw";
+  std::string memory_limit;
   bool list = false;
   bool json_errors = false;
 };
@@ -59,14 +65,12 @@ Result<std::vector<NodalResult>> read_results(const TransferArguments& arguments
   return std::vector<NodalResult>{std::move(*one)};
 }
 
-Result<void> transfer(const TransferArguments& arguments) {
-  const Result<std::string> bytes = read_mesh_input(arguments.cell);
-  if (!bytes) return error_of(bytes);
-  auto cell = read_cell(*bytes);
-  if (!cell) {
-    cell.error().message = arguments.cell + ": " + cell.error().message;
-    return error_of(cell);
-  }
+// In a process of its own. `file`: null to list what there is.
+Result<std::string> transfer(const TransferArguments& arguments,
+                             AtomicOutput* file,
+                             const ExecutionContext& context) {
+  const Result<SymmetryCellMesh> cell = read_cell_file(arguments.cell);
+  if (!cell) return error_of(cell);
   auto results = read_results(arguments, cell->nodes.size());
   if (!results) {
     results.error().message = arguments.results + ": " + results.error().message;
@@ -76,7 +80,7 @@ Result<void> transfer(const TransferArguments& arguments) {
     return find_nodal_diameter(
         *cell, r, arguments.nodal_diameter ? arguments.nodal_diameter : r.nodal_diameter);
   };
-  if (arguments.list) {
+  if (file == nullptr) {
     std::printf("%6s %-10s %14s %14s %10s\n", "result", "name", "value", "nodal diameter",
                 "mismatch");
     for (std::size_t i = 0; i < results->size(); ++i) {
@@ -85,10 +89,7 @@ Result<void> transfer(const TransferArguments& arguments) {
       std::printf("%6zu %-10s %14.6g %14d %10.2g\n", i + 1, r.name.c_str(), r.value,
                   k.signed_diameter, k.mismatch);
     }
-    return {};
-  }
-  if (arguments.full.empty()) {
-    return fail(ErrorCode::kBadOption, "give --full FILE.vtu for the result, or --list");
+    return std::string();
   }
   if (arguments.result < 1 || arguments.result > results->size()) {
     return fail(ErrorCode::kBadOption, "--result must be from 1 to " +
@@ -106,15 +107,40 @@ Result<void> transfer(const TransferArguments& arguments) {
             " of the largest vector; is an imaginary part missing, or are the results of another "
             "cell?");
   }
-  Result<AtomicOutput> file = AtomicOutput::open(arguments.full);
-  if (!file) return error_of(file);
-  const VtuEncoding encoding = arguments.encoding == "zlib"    ? VtuEncoding::kAppendedZlib
-                               : arguments.encoding == "ascii" ? VtuEncoding::kAscii
-                                                               : VtuEncoding::kAppendedRaw;
-  SYMCELL_TRY(write_full_result(*cell, chosen, k.signed_diameter,
-                                arguments.phase_deg * std::numbers::pi / 180, "displacement",
-                                encoding, file->sink()));
-  return file->commit();
+  // The parser takes no other name.
+  const VtuEncoding encoding =
+      vtu_encoding_from_name(arguments.encoding).value_or(VtuEncoding::kAppendedRaw);
+  const Sink whole = file->sink();
+  const Sink sink = [&](std::string_view piece) { return !context.cancelled() && whole(piece); };
+  const auto written = write_full_result(*cell, chosen, k.signed_diameter,
+                                         arguments.phase_deg * std::numbers::pi / 180,
+                                         "displacement", encoding, sink);
+  if (!written && context.cancelled()) {
+    return fail(ErrorCode::kCancelled, "cancelled while writing; no output was left");
+  }
+  if (!written) return error_of(written);
+  return std::string();
+}
+
+Result<void> run(const TransferArguments& arguments) {
+  const Result<std::uint64_t> memory_bytes = memory_limit_bytes(arguments.memory_limit);
+  if (!memory_bytes) return error_of(memory_bytes);
+  std::optional<AtomicOutput> file;
+  if (!arguments.list) {
+    if (arguments.full.empty()) {
+      return fail(ErrorCode::kBadOption, "give --full FILE.vtu for the result, or --list");
+    }
+    Result<AtomicOutput> opened = AtomicOutput::open(arguments.full);
+    if (!opened) return error_of(opened);
+    file.emplace(std::move(*opened));
+  }
+  const auto done = run_supervised(
+      [&](ExecutionContext& context) {
+        return transfer(arguments, file ? &*file : nullptr, context);
+      },
+      {.memory_bytes = *memory_bytes});
+  if (!done) return error_of(done);
+  return file ? file->commit() : Result<void>{};
 }
 
 }  // namespace
@@ -151,11 +177,12 @@ void add_transfer_command(CLI::App& app, int& exit_code) {
   command->add_option("--encoding", arguments->encoding, "of the VTU file [raw]")
       ->type_name("raw|zlib|ascii")
       ->check(CLI::IsMember({"raw", "zlib", "ascii"}));
+  add_memory_limit(*command, arguments->memory_limit);
   command->add_flag("--json-errors", arguments->json_errors,
                     "errors as problem documents on standard error");
   command->footer(kExamples);
   command->callback([arguments, &exit_code] {
-    const Result<void> done = transfer(*arguments);
+    const Result<void> done = run(*arguments);
     exit_code = done ? 0 : report_error(done.error(), arguments->json_errors);
   });
 }

@@ -40,7 +40,6 @@ class ConnectionStream final : public httplib::Stream {
   ConnectionStream(const ConnectionStream&) = delete;
   ConnectionStream& operator=(const ConnectionStream&) = delete;
 
-  [[nodiscard]] std::uint64_t bytes_written() const { return written_; }
   // While `silent` is true what is written goes nowhere.
   void silence_by(const bool& silent) { silent_ = &silent; }
   // httplib::Stream
@@ -103,6 +102,7 @@ struct Exchange {
   std::string content_encoding;  // likewise for inflating
   int status = 0;
   std::uint64_t declared_bytes = 0;  // of the body, by Content-Length
+  std::uint64_t sent_before = 0;     // by the connection, to earlier requests
   bool body_expected = false;        // the request announces a body
   bool body_consumed = false;        // and it was read to its end
   bool close = false;                // the connection cannot serve another request

@@ -53,11 +53,7 @@ class EventStream final : public SuspendedCall {
 
   bool look(Connection& connection) override {
     if (!ended_) {
-      try {
-        gather();
-      } catch (const std::exception&) {
-        return true;  // the store fails, which is told there: the client comes again
-      }
+      gather();
       if (!ended_ && Clock::now() - last_sent_ > kHeartbeat) add(": still here\n\n");
       if (ended_ && chunked_) unsent_ += "0\r\n\r\n";
     }
@@ -69,7 +65,8 @@ class EventStream final : public SuspendedCall {
     return Clock::now() + (soon ? kProgressInterval : std::chrono::milliseconds(kHeartbeat));
   }
 
-  bool answer(Call& /*call*/) override { return false; }
+  // Its head was sent by the handler.
+  void answer(Call& /*call*/) override {}
 
  private:
   // The events the client has not seen yet.

@@ -235,8 +235,7 @@ class HttpServer::Impl final : public httplib::Server {
       for (const auto& [name, value] : exchange.kept_headers) {
         if (!response.has_header(name)) response.set_header(name, value);
       }
-      router_.resume(
-          call, [&](Call& resumed) { static_cast<void>(exchange.suspended->answer(resumed)); });
+      router_.resume(call, [&](Call& resumed) { exchange.suspended->answer(resumed); });
     } else if (check_site(call)) {
       router_.dispatch(call);
     }
@@ -328,6 +327,7 @@ class HttpServer::Impl final : public httplib::Server {
     exchange->request_id = make_random_hex();
     exchange->client = connection->client();
     exchange->declared_bytes = connection->head.head().content_length;
+    exchange->sent_before = connection->sent();
     const bool last = ++connection->served == kMaxKeepAliveRequests;
     go_on(connection, exchange, answer(*connection, *exchange, last));
   }
@@ -353,7 +353,7 @@ class HttpServer::Impl final : public httplib::Server {
               bool goes_on) {
     exchange->resumed = true;
     if (!exchange->silent) {
-      record(*exchange, 0);
+      record(*exchange, connection->sent() - exchange->sent_before);
       lobby_.let_go(connection);
       return;
     }
@@ -395,7 +395,7 @@ class HttpServer::Impl final : public httplib::Server {
     current_exchange = nullptr;
     --in_flight_;
     const bool over = !exchange.suspended || exchange.resumed;
-    if (exchange.status != 0 && over) record(exchange, stream.bytes_written());
+    if (exchange.status != 0 && over) record(exchange, connection.sent() - exchange.sent_before);
     return sound && !closed && !last;
   }
 

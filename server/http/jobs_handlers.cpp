@@ -77,21 +77,16 @@ class WaitingCall final : public SuspendedCall {
     if (Clock::now() >= deadline_ || context_.jobs.stopping()) return true;
     // What runs here has not ended; the runner tells when it has.
     if (context_.jobs.runner().progress(job_.id)) return false;
-    try {
-      const auto found = context_.jobs.find(job_.id);
-      return !found || is_finished(found->state);
-    } catch (const StoreError&) {
-      return true;
-    }
+    const auto found = context_.jobs.find(job_.id);
+    return !found || is_finished(found->state);
   }
 
   [[nodiscard]] Clock::time_point look_again_at() const override { return deadline_; }
 
-  bool answer(Call& call) override {
+  void answer(Call& call) override {
     if (auto found = context_.jobs.find(job_.id)) job_ = std::move(*found);
     place_.reset();
     respond_state(call, job_, context_);
-    return true;
   }
 
  private:

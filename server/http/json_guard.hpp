@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "api/formats/json_walker.hpp"
 #include "core/base/error.hpp"
 
 namespace symcell::server {
@@ -22,7 +23,7 @@ class JsonGuard {
   [[nodiscard]] const Error& error() const { return *error_; }
 
   // Those of the reader, and the object around the model.
-  static constexpr std::size_t kMostDepth = 65;
+  static constexpr std::size_t kMostDepth = internal::kMostJsonDepth + 1;
 
  private:
   struct Level {

@@ -53,7 +53,10 @@ ssize_t Connection::receive(char* into, std::size_t size) {
 }
 
 ssize_t Connection::send(const char* from, std::size_t size) {
-  return tls_ ? tls_->send(from, size) : ::send(socket_, from, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+  const ssize_t sent =
+      tls_ ? tls_->send(from, size) : ::send(socket_, from, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (sent > 0) sent_ += static_cast<std::uint64_t>(sent);
+  return sent;
 }
 
 Connection::~Connection() {

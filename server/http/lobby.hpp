@@ -49,6 +49,7 @@ class Connection {
   // As recv() and send() with MSG_DONTWAIT and MSG_NOSIGNAL, through TLS where there is some.
   [[nodiscard]] ssize_t receive(char* bytes, std::size_t size);
   [[nodiscard]] ssize_t send(const char* bytes, std::size_t size);
+  [[nodiscard]] std::uint64_t sent() const { return sent_; }  // bytes so far, without those of TLS
   [[nodiscard]] bool pending() const { return tls_ && tls_->pending(); }
 
   std::string bytes;       // that came and were not taken yet
@@ -65,6 +66,7 @@ class Connection {
   std::string client_;
   Lobby& lobby_;
   std::unique_ptr<TlsSession> tls_;
+  std::uint64_t sent_ = 0;
   Phase phase_ = Phase::kIdle;
   Clock::time_point since_ = Clock::now();  // of the phase
   Clock::time_point deadline_{};

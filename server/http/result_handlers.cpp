@@ -219,16 +219,15 @@ std::optional<MeshFormat> mesh_format_of(Call& call, std::int32_t dimension) {
 
 std::optional<WriteOptions> write_options_of(Call& call) {
   WriteOptions options;
-  const std::string encoding = call.parameter("encoding");
-  if (encoding == "zlib") options.vtu_encoding = VtuEncoding::kAppendedZlib;
-  if (encoding == "ascii") {
-    options.vtu_encoding = VtuEncoding::kAscii;
-    options.stl_ascii = true;
-  }
-  if (!encoding.empty() && encoding != "raw" && encoding != "zlib" && encoding != "ascii") {
-    respond_problem(call, ServiceProblem::kBadRequest,
-                    "encoding (of vtu and vtp; ascii also of stl) is one of raw, zlib, ascii");
-    return std::nullopt;
+  if (const std::string name = call.parameter("encoding"); !name.empty()) {
+    const auto encoding = vtu_encoding_from_name(name);
+    if (!encoding) {
+      respond_problem(call, ServiceProblem::kBadRequest,
+                      "encoding (of vtu and vtp; ascii also of stl) is one of raw, zlib, ascii");
+      return std::nullopt;
+    }
+    options.vtu_encoding = *encoding;
+    options.stl_ascii = *encoding == VtuEncoding::kAscii;
   }
   if (call.has_parameter("packed")) {
     const auto packed = packed_reals_from_name(call.parameter("packed"));

@@ -1,5 +1,6 @@
 #include "server/http/suspended_calls.hpp"
 
+#include <exception>
 #include <limits>
 #include <vector>
 
@@ -62,7 +63,13 @@ void SuspendedCalls::look(const Held& entry) {
   // Before the look: who wakes from now on may know more than it finds.
   entry->woken = false;
   if (entry->over) return;
-  entry->over = entry->call->look(*entry->connection);
+  try {
+    entry->over = entry->call->look(*entry->connection);
+  } catch (const std::exception&) {
+    // The store fails most likely, which is told there. An answer meets the same and tells the client; who
+    // follows a stream comes again.
+    entry->over = true;
+  }
   {
     const std::lock_guard lock(mutex_);
     due_.erase({entry->due, entry});

@@ -29,12 +29,12 @@ class SuspendedCall {
   virtual ~SuspendedCall() = default;
   // From now on `wake` is called, by any thread, when there may be news; until the result goes.
   [[nodiscard]] virtual std::shared_ptr<void> watch(std::function<void()> wake) = 0;
-  // Looks for news, without waiting for anything. True: the call is over.
+  // Looks for news, without waiting for anything. True: the call is over, as it is if this throws.
   [[nodiscard]] virtual bool look(Connection& connection) = 0;
   // When to look again though there are no news.
   [[nodiscard]] virtual Clock::time_point look_again_at() const = 0;
-  // Fills the answer of a call that is over. False: it has sent all there is by itself.
-  [[nodiscard]] virtual bool answer(Call& call) = 0;
+  // Fills the answer of a call that is over and has sent nothing by itself.
+  virtual void answer(Call& call) = 0;
 };
 
 class SuspendedCalls {

@@ -94,6 +94,8 @@ void WebhookSender::work() {
 bool WebhookSender::send_next() {
   const auto delivery = jobs_.store().claim_delivery(kClaim);
   if (!delivery) return false;
+  // Nobody is told of an end that a failure of the machine might undo.
+  jobs_.make_durable();
   const auto job = jobs_.find(delivery->job_id);
   if (!job) return true;  // deleted, and its message with it
   const std::string fault = post(*delivery, *job);
@@ -114,6 +116,7 @@ bool WebhookSender::send_next() {
   } else {
     jobs_.store().delivery_failed(job->id, std::nullopt);
   }
+  jobs_.make_durable();
   return true;
 }
 

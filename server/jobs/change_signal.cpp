@@ -49,20 +49,4 @@ void ChangeSignal::notify_all() {
   for (const auto& callback : called) (*callback)();
 }
 
-ChangeWaiter::ChangeWaiter(const ChangeSignal& signal, std::string_view id)
-    : watch_(signal.watch(id, [state = state_] {
-        {
-          const std::lock_guard lock(state->mutex);
-          state->news = true;
-        }
-        state->changed.notify_one();
-      })) {
-}
-
-bool ChangeWaiter::wait_until(ChangeSignal::Clock::time_point deadline) {
-  std::unique_lock lock(state_->mutex);
-  state_->changed.wait_until(lock, deadline, [this] { return state_->news; });
-  return std::exchange(state_->news, false);
-}
-
 }  // namespace symcell::server

@@ -44,23 +44,4 @@ class ChangeSignal {
   mutable Watches watches_;
 };
 
-// Waits in its own thread for changes of one job.
-class ChangeWaiter {
- public:
-  ChangeWaiter(const ChangeSignal& signal, std::string_view id);
-
-  // False: no change since the last call, or the making of the waiter, until the deadline.
-  bool wait_until(ChangeSignal::Clock::time_point deadline);
-
- private:
-  struct State {
-    std::mutex mutex;
-    std::condition_variable changed;
-    bool news = false;
-  };
-
-  const std::shared_ptr<State> state_ = std::make_shared<State>();
-  const ChangeSignal::Watch watch_;
-};
-
 }  // namespace symcell::server

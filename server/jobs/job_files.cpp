@@ -49,12 +49,18 @@ void JobFiles::synchronise() const {
   if (!done) throw std::system_error(error, std::generic_category(), jobs.string());
 }
 
+// The job's folder, too, which may have got its name since anything was synchronised.
+void JobFiles::synchronise_results(const Job& job) const {
+  sync_file(statistics(job));
+  sync_file(cell(job));
+  sync_directory(JobFiles::job(job.id));
+  sync_directory(root_ / "jobs");
+}
+
 bool JobFiles::restore(const FileCopy& copy) const {
   const fs::path file = job(copy.job_id) / copy.name;
-  if (fs::is_regular_file(fs::symlink_status(file)) &&
-      MappedFile(file, Links::kRefuse).bytes() == copy.bytes) {
-    return false;
-  }
+  const bool as_it_was = fs::is_regular_file(fs::symlink_status(file)) &&
+                         MappedFile(file, Links::kRefuse).bytes() == copy.bytes;
   fs::create_directories(file.parent_path());
   const fs::path part = partial(file);
   fs::remove(part);
@@ -62,7 +68,7 @@ bool JobFiles::restore(const FileCopy& copy) const {
   writer.write(copy.bytes);
   writer.keep();
   fs::rename(part, file);
-  return true;
+  return !as_it_was;
 }
 
 fs::path JobFiles::cell(const Job& job) const {

@@ -46,7 +46,10 @@ class JobFiles {
   void adopt_model(const std::filesystem::path& arrived, std::string_view id, bool durable) const;
   // All files of all jobs that were written before are on the disk when this returns.
   void synchronise() const;
-  // Writes the file of a copy again if it is not as it was; synchronise() makes it last. False: it is.
+  // The results of a job, which have their names, are on the disk when this returns.
+  void synchronise_results(const Job& job) const;
+  // Writes the file of a copy again; synchronise() makes it last. False: it is as it was, as far as one can see:
+  // what the kernel could not write it still shows for a while.
   [[nodiscard]] bool restore(const FileCopy& copy) const;
   // Removes everything of a job; never throws: what cannot be removed now goes at the next start.
   void remove(std::string_view id) const noexcept;

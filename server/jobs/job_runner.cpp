@@ -1,8 +1,5 @@
 #include "server/jobs/job_runner.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <exception>
@@ -51,14 +48,6 @@ bool may_pass(const std::system_error& error) {
     case ENFILE: return true;
     default: return false;
   }
-}
-
-void sync_file(const std::filesystem::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
-  const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
-  const int error = errno;
-  if (descriptor >= 0) ::close(descriptor);
-  if (!synced) throw std::system_error(error, std::generic_category(), file.string());
 }
 
 // Also after a try that came half way. Whoever calls makes it last.
@@ -307,6 +296,7 @@ void JobRunner::run(const Job& job) {
 void JobRunner::remove_files_if_deleted(const std::string& id) {
   try {
     if (parts_.store.find(id)) return;
+    parts_.store.make_durable();
     parts_.files.remove(id);
     parts_.faults.remove(id);
   } catch (const std::exception& exception) {
@@ -339,7 +329,8 @@ void JobRunner::count_lost_worker(const std::string& id) {
     const std::lock_guard lock(mutex_);
     if (stopping_) return;
   }
-  static_cast<void>(persist(id, [&] { parts_.store.count_lost_worker(id); }));
+  static_cast<void>(persist(id, [&] { parts_.store.count_lost_worker(id); }) &&
+                    persist(id, [&] { parts_.store.make_durable(); }));
 }
 
 bool JobRunner::publish(const Job& job, Published& published) {
@@ -357,9 +348,7 @@ bool JobRunner::publish(const Job& job, Published& published) {
                           {cell.filename(), std::string(MappedFile(cell, Links::kRefuse).bytes())}};
       return;
     }
-    sync_file(statistics);
-    sync_file(cell);
-    sync_directory(cell.parent_path());
+    parts_.files.synchronise_results(job);
   });
 }
 
@@ -484,7 +473,6 @@ void JobRunner::settle(const Job& job, Running& running, Result<Published>& resu
   // By a clock that nobody sets.
   const std::int64_t took_ms = steady_ms() - running.started_steady_ms;
   JobChange change{.time_ms = job.started_ms.value_or(0) + took_ms, .attempt = job.attempt};
-  change.durable_soon = true;
   JobEvent event = JobEvent::kSucceed;
   if (result) {
     change.result_bytes = result->bytes;

@@ -134,6 +134,7 @@ void JobService::take_up_what_was_left() {
   restore_copies(*store_, files_, logger_);
   store_->tidy(std::numeric_limits<std::int64_t>::max());
   for (const Job& job : store_->unfinished()) recover(job);
+  store_->make_durable();
 }
 
 void JobService::recover(const Job& job) {
@@ -202,7 +203,7 @@ SubmitOutcome JobService::submit_options(const Submission& submission,
     // Before the queue is asked: a repeated request gets its job however full the queue is.
     if (auto known = store_->find_key(*key)) {
       const bool same = known->result == InsertResult::kReplayed;
-      if (!submission.durable_soon) make_durable();
+      if (!submission.durable_soon || end_is_unsettled(known->job)) make_durable();
       return {same ? SubmitStatus::kReplayed : SubmitStatus::kKeyConflict, std::move(known->job)};
     }
   }
@@ -214,7 +215,7 @@ SubmitOutcome JobService::submit_options(const Submission& submission,
     if (copies_) copies_->poke();
   }
   // Beside the run, which may have begun.
-  if (!submission.durable_soon) make_durable();
+  if (!submission.durable_soon || end_is_unsettled(outcome.job)) make_durable();
   return outcome;
 }
 
@@ -262,10 +263,12 @@ SubmitOutcome JobService::store_job(const Submission& submission,
   } else {
     job.model_sha256 = sha256_of_file(submission.model);
   }
+  bool has_row = false;
   try {
     files_.adopt_model(submission.model, job.id, copies.empty());
     InsertOutcome inserted = store_->insert(job, key, admission(submission.limits), copies);
-    if (inserted.result == InsertResult::kInserted) {
+    has_row = inserted.result == InsertResult::kInserted;
+    if (has_row) {
       settle_or_erase(*store_, files_, job.id);
     } else {
       discard_staged(files_, job.id);
@@ -280,7 +283,7 @@ SubmitOutcome JobService::store_job(const Submission& submission,
   } catch (const StoreError&) {
     // A database that went away may have the row. Then the job will be asked for again, by its key for
     // instance, and run; else remove_stale() has the model.
-    if (!store_->shared()) discard_staged(files_, job.id);
+    if (!store_->shared() && !has_row) discard_staged(files_, job.id);
     throw;
   } catch (...) {
     discard_staged(files_, job.id);
@@ -306,19 +309,6 @@ std::vector<Job> JobService::list(const JobFilter& filter) {
     make_durable();
   }
   return jobs;
-}
-
-std::optional<Job> JobService::wait_finished(std::string_view id,
-                                             ChangeSignal::Clock::time_point deadline) {
-  ChangeWaiter waiter(changes_, id);
-  while (true) {
-    // What runs here has not ended; the runner tells when it has.
-    if (stopping_ || !runner_->progress(id)) {
-      auto job = find(id);
-      if (!job || is_finished(job->state) || stopping_) return job;
-    }
-    if (!waiter.wait_until(deadline)) return find(id);
-  }
 }
 
 std::optional<Progress> JobService::progress(const Job& job) const {
@@ -355,6 +345,12 @@ std::optional<Job> JobService::cancel(std::string_view id) {
   if (job->state == JobState::kQueued &&
       store_->apply(id, JobEvent::kCancel, {.time_ms = now_ms(), .attempt = job->attempt})) {
     logger_.info("job_cancelled_in_queue", {{"job", id}});
+    try {
+      make_durable();
+    } catch (const StoreError&) {
+      changes_.notify(id);
+      throw;
+    }
     changes_.notify(id);
     return find(id);
   }
@@ -370,13 +366,14 @@ bool JobService::erase(std::string_view id) {
   const auto job = store_->find(id);
   if (!store_->erase(id)) return false;
   runner_->cancel(id);
+  changes_.notify(id);
+  logger_.info("job_deleted", {{"job", id}});
+  make_durable();
   // Where another server runs it, that one removes the files.
   const bool elsewhere = store_->shared() && job && job->state == JobState::kRunning;
   // A worker that still holds the job removes the files when it lets go and finds the row gone.
   if (!elsewhere && !runner_->progress(id)) files_.remove(id);
   faults_.remove(id);
-  logger_.info("job_deleted", {{"job", id}});
-  changes_.notify(id);
   return true;
 }
 

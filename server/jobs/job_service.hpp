@@ -99,14 +99,12 @@ class JobService {
 
   [[nodiscard]] std::optional<Job> find(std::string_view id);
   [[nodiscard]] std::vector<Job> list(const JobFilter& filter);
-  // The job once it is finished, or as it is at the deadline or when the server stops.
-  [[nodiscard]] std::optional<Job> wait_finished(std::string_view id,
-                                                 ChangeSignal::Clock::time_point deadline);
   [[nodiscard]] std::optional<Progress> progress(const Job& job) const;
 
   // nullopt: unknown. A finished job stays as it is; a running one is cancelled within a second.
   std::optional<Job> cancel(std::string_view id);
-  // Forgets the job at once; if it runs, its worker stops within a second. False: unknown.
+  // Forgets the job at once; if it runs, its worker stops within a second. False: unknown. StoreError: it is not
+  // forgotten, or not for sure; then its files go later.
   bool erase(std::string_view id);
 
   [[nodiscard]] const JobFiles& files() const { return files_; }

@@ -1,7 +1,9 @@
 // Where jobs are kept: an interface, so that an embedded and a shared database can stand behind it.
 //
-// Every call is atomic, seen by every other once it returns and, but for what says so, durable then. Any thread
-// may call. A failing database throws StoreError (see server/base/files.hpp for why).
+// Every call is atomic and seen by every other once it returns. It lasts from the next make_durable() on that
+// returns, or sooner: so whoever commits need not wait for the disk, and what a call throws says always that it
+// has changed nothing. Any thread may call. A failing database throws StoreError (see server/base/files.hpp for
+// why).
 #pragma once
 
 #include <array>
@@ -20,7 +22,8 @@
 namespace symcell::server {
 
 // The database does not do what it was asked, and has changed nothing: it is locked, full, damaged or
-// gone. What was asked may be asked again.
+// gone. What was asked may be asked again. Thrown by make_durable(): what was written before is seen, and may
+// be undone by a failure of the machine.
 class StoreError : public std::runtime_error {
  public:
   enum class Kind : std::uint8_t { kBusy, kFull, kDamaged, kOther };
@@ -100,8 +103,6 @@ struct JobChange {
   std::string statistics_sha256 = {};
   // Of its results; of stores that keep copies.
   std::vector<FileCopy> copies = {};
-  // Whoever asks for this calls make_durable() before anybody is told.
-  bool durable_soon = false;
 };
 
 struct StoreTotals {
@@ -132,9 +133,8 @@ class JobStore {
  public:
   virtual ~JobStore() = default;
 
-  // `job.sequence` is given by the store, and so is its turn among those that wait. Durable from the next
-  // make_durable() on, like claim(), or from any other call that writes and came later. `copies`: of its
-  // model; of stores that keep copies.
+  // `job.sequence` is given by the store, and so is its turn among those that wait. `copies`: of its model; of
+  // stores that keep copies.
   virtual InsertOutcome insert(const Job& job,
                                const std::optional<IdempotencyKey>& key,
                                const Admission& admission,
@@ -211,6 +211,8 @@ class JobStore {
   // Files may outlive their job if the server dies before it has removed them: whether a job was
   // erased tells them from files that the database never heard of.
   [[nodiscard]] virtual bool was_erased(std::string_view id) = 0;
+  // Those that tidy(mark) forgets. Of a store that is shared, none: whoever ran a job removes its files.
+  [[nodiscard]] virtual std::vector<std::string> erased_up_to(std::int64_t /*mark*/) { return {}; }
   // Forgets those erased up to the mark, of which no files are left, and notes the clock. Returns the
   // mark of now. To be called now and then.
   virtual std::int64_t tidy(std::int64_t mark) = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <string>
+#include <vector>
 
 #include "server/base/clock.hpp"
 
@@ -34,6 +36,15 @@ std::size_t apply_retention(const RetentionRules& rules, JobStore& store, const 
   StoreTotals totals = store.totals();
   std::int64_t finished = finished_count(totals);
   std::int64_t may_age = std::max(kLeastPerSweep, finished / kShareOfASweep);
+  // The rows first: files without a row are swept, a row without files would be an error.
+  std::vector<std::string> erased;
+  const auto remove_files = [&] {
+    if (erased.empty()) return;
+    store.make_durable();
+    for (const std::string& id : erased) files.remove(id);
+    removed += erased.size();
+    erased.clear();
+  };
   // Most often there is nothing to remove, and the oldest one shows it.
   for (std::size_t batch = 1;; batch = kBatch) {
     const auto oldest = store.oldest_finished(batch);
@@ -43,15 +54,17 @@ std::size_t apply_retention(const RetentionRules& rules, JobStore& store, const 
       const bool too_old = rules.max_age_s > 0 && age_ms > rules.max_age_s * 1000 && may_age > 0;
       const bool too_many = rules.max_jobs > 0 && finished > rules.max_jobs;
       const bool too_large = rules.max_bytes > 0 && totals.bytes > rules.max_bytes;
-      if (!too_old && !too_many && !too_large) return removed;
-      // The row first: files without a row are swept, a row without files would be an error.
+      if (!too_old && !too_many && !too_large) {
+        remove_files();
+        return removed;
+      }
       store.erase(job.id);
-      files.remove(job.id);
+      erased.push_back(job.id);
       totals.bytes -= job.model_bytes + job.result_bytes;
       --finished;
       if (too_old) --may_age;
-      ++removed;
     }
+    remove_files();
   }
 }
 
@@ -61,12 +74,20 @@ std::size_t remove_spent_models(const RetentionRules& rules,
   if (rules.spent_model_age_s == 0) return 0;
   const std::int64_t before = store.clock_ms() - rules.spent_model_age_s * 1000;
   const auto spent = store.spent_models(before, kBatch);
-  for (const Job& job : spent) {
-    // The row first: a row without its model would be an error.
-    store.forget_model(job.id);
-    files.remove_model(job.id);
-  }
+  if (spent.empty()) return 0;
+  // The rows first: a row without its model would be an error. Should they not be made to last, the models stay
+  // until their jobs go.
+  for (const Job& job : spent) store.forget_model(job.id);
+  store.make_durable();
+  for (const Job& job : spent) files.remove_model(job.id);
   return spent.size();
+}
+
+std::int64_t tidy_erased(JobStore& store, const JobFiles& files, std::int64_t mark) {
+  const auto erased = store.erased_up_to(mark);
+  if (!erased.empty()) store.make_durable();
+  for (const std::string& id : erased) files.remove(id);
+  return store.tidy(mark);
 }
 
 RetentionKeeper::RetentionKeeper(RetentionRules rules,
@@ -104,7 +125,7 @@ void RetentionKeeper::work(const std::stop_token& stop) {
       // Those of the sweep before: a worker lets go of its files within a second.
       if (const std::int64_t now = steady_ms(); now >= tidy_at_ms_) {
         tidy_at_ms_ = now + std::chrono::milliseconds(kInterval).count();
-        erased_mark_ = store_.tidy(erased_mark_);
+        erased_mark_ = tidy_erased(store_, files_, erased_mark_);
       }
       if (removed > 0) {
         logger_.info("jobs_expired", {{"count", static_cast<std::int64_t>(removed)}});

@@ -31,6 +31,10 @@ std::size_t remove_spent_models(const RetentionRules& rules,
                                 JobStore& store,
                                 const JobFiles& files);
 
+// Removes the files of jobs that were erased up to the mark, and forgets these. Most have gone with their jobs:
+// what is left is of jobs whose end could not be made to last at once. Returns the mark of now.
+std::int64_t tidy_erased(JobStore& store, const JobFiles& files, std::int64_t mark);
+
 // Applies the rules at start, every minute, and soon after poke().
 class RetentionKeeper {
  public:

@@ -9,7 +9,6 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 
 #include "server/jobs/sqlite_connection.hpp"
 #include "server/jobs/sqlite_log.hpp"
@@ -36,18 +35,6 @@ std::int64_t day_of(std::int64_t ms) {
   constexpr std::int64_t kDayMs = std::int64_t{24} * 3600 * 1000;
   return ms / kDayMs;
 }
-
-// Whatever became of what is written while this lives, what waits for the disk waits for it, too.
-class Committed {
- public:
-  explicit Committed(SqliteLog& log) : log_(log) {}
-  ~Committed() { log_.committed(); }
-  Committed(const Committed&) = delete;
-  Committed& operator=(const Committed&) = delete;
-
- private:
-  SqliteLog& log_;
-};
 
 }  // namespace
 
@@ -82,21 +69,9 @@ struct SqliteJobStore::Impl {
   // Runs `work` with the connection that writes, one at a time. What it commits lasts only from the next
   // make_durable() on.
   template <class Work>
-  auto write_soon_durable(const Work& work) {
-    const std::lock_guard lock(writing);
-    const Committed committed(*wal);
-    return translate_sqlite_errors([&] { return work(database); });
-  }
-  template <class Work>
   auto write(const Work& work) {
-    if constexpr (std::is_void_v<decltype(work(database))>) {
-      write_soon_durable(work);
-      wal->reach();
-    } else {
-      auto result = write_soon_durable(work);
-      wal->reach();
-      return result;
-    }
+    const std::lock_guard lock(writing);
+    return translate_sqlite_errors([&] { return work(database); });
   }
   // The same with the connection that reads: a write that waits for a lock holds nobody up.
   template <class Work>
@@ -223,7 +198,6 @@ struct SqliteJobStore::Impl {
   std::mutex counting;  // guards `totals`
   StoreTotals totals;
 
-  std::unique_ptr<SqliteLog> wal;
   std::timed_mutex writing;  // guards `database`
   SqliteConnection database;
   std::mutex reading;  // guards `reader`
@@ -262,6 +236,8 @@ struct SqliteJobStore::Impl {
     if (!job) throw std::runtime_error("an idempotency key without its job");
     return InsertOutcome{same ? InsertResult::kReplayed : InsertResult::kConflict, *job};
   }
+
+  std::unique_ptr<SqliteLog> wal;  // last: it uses `database` until it goes
 };
 
 SqliteJobStore::SqliteJobStore(const std::filesystem::path& file,
@@ -276,7 +252,7 @@ InsertOutcome SqliteJobStore::insert(const Job& job,
                                      const std::optional<IdempotencyKey>& key,
                                      const Admission& admission,
                                      const std::vector<FileCopy>& copies) {
-  return impl_->write_soon_durable([&](SqliteConnection& database) -> InsertOutcome {
+  return impl_->write([&](SqliteConnection& database) -> InsertOutcome {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
     if (key) {
       if (auto known = Impl::known_key(database, *key)) return *known;
@@ -335,7 +311,7 @@ ClientUsage SqliteJobStore::usage(std::string_view client, std::int64_t time_ms)
 }
 
 std::optional<Job> SqliteJobStore::claim(std::int64_t time_ms) {
-  return impl_->write_soon_durable([&](SqliteConnection& database) -> std::optional<Job> {
+  return impl_->write([&](SqliteConnection& database) -> std::optional<Job> {
     if (impl_->queued() == 0) return std::nullopt;
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
     Prepared query(database, std::string("SELECT ") + kJobColumns + kWhoseTurn);
@@ -370,13 +346,14 @@ std::vector<Job> SqliteJobStore::list(const JobFilter& filter) {
   std::string sql = std::string("SELECT ") + kJobColumns + " FROM jobs WHERE sequence < ?";
   if (filter.state) sql += " AND state = ?";
   if (filter.owner) sql += " AND owner = ?";
-  sql += " ORDER BY sequence DESC LIMIT " + std::to_string(filter.limit);
+  sql += " ORDER BY sequence DESC LIMIT ?";
   return impl_->read([&](SqliteConnection& database) {
     Prepared query(database, sql);
     query.bind(1, filter.before_sequence.value_or(std::numeric_limits<std::int64_t>::max()));
     int next = 2;
     if (filter.state) query.bind(next++, std::string(job_state_name(*filter.state)));
-    if (filter.owner) query.bind(next, *filter.owner);
+    if (filter.owner) query.bind(next++, *filter.owner);
+    query.bind(next, static_cast<std::int64_t>(filter.limit));
     return read_jobs(query);
   });
 }
@@ -394,8 +371,8 @@ std::vector<Job> SqliteJobStore::oldest_finished(std::size_t limit) {
   return impl_->read([&](SqliteConnection& database) {
     Prepared query(database, std::string("SELECT ") + kJobColumns +
                                  " FROM jobs WHERE finished_clock_ms IS NOT NULL ORDER BY "
-                                 "finished_clock_ms, sequence LIMIT " +
-                                 std::to_string(limit));
+                                 "finished_clock_ms, sequence LIMIT ?");
+    query.bind(1, static_cast<std::int64_t>(limit));
     return read_jobs(query);
   });
 }
@@ -403,7 +380,7 @@ std::vector<Job> SqliteJobStore::oldest_finished(std::size_t limit) {
 std::optional<Job> SqliteJobStore::apply(std::string_view id,
                                          JobEvent event,
                                          const JobChange& change) {
-  auto applied = impl_->write_soon_durable([&](SqliteConnection& database) -> std::optional<Job> {
+  return impl_->write([&](SqliteConnection& database) -> std::optional<Job> {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
     auto job = Impl::find(database, id);
     if (!job) return std::nullopt;
@@ -454,8 +431,6 @@ std::optional<Job> SqliteJobStore::apply(std::string_view id,
     impl_->count(job->state, 1, job->result_bytes - bytes_before);
     return job;
   });
-  if (!change.durable_soon) impl_->wal->reach();
-  return applied;
 }
 
 void SqliteJobStore::make_durable() {
@@ -467,7 +442,7 @@ std::uint64_t SqliteJobStore::copied_bytes() {
 }
 
 std::int64_t SqliteJobStore::newest_copy() {
-  return impl_->write_soon_durable([](SqliteConnection& database) {
+  return impl_->read([](SqliteConnection& database) {
     return database.execAndGet("SELECT COALESCE(MAX(number), 0) FROM file_copies").getInt64();
   });
 }
@@ -485,7 +460,7 @@ std::optional<FileCopy> SqliteJobStore::copy_after(std::int64_t number) {
 }
 
 void SqliteJobStore::forget_copies(std::int64_t number) {
-  impl_->write_soon_durable([&](SqliteConnection& database) {
+  impl_->write([&](SqliteConnection& database) {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
     Prepared forget(database, "DELETE FROM file_copies WHERE number <= ?");
     forget.bind(1, number);
@@ -513,9 +488,9 @@ std::vector<Job> SqliteJobStore::spent_models(std::int64_t before_clock_ms, std:
                    std::string("SELECT ") + kJobColumns +
                        " FROM jobs INDEXED BY jobs_with_spent_models WHERE state IN ('failed', "
                        "'cancelled') AND model_kept = 1 AND finished_clock_ms < ? ORDER BY "
-                       "finished_clock_ms LIMIT " +
-                       std::to_string(limit));
+                       "finished_clock_ms LIMIT ?");
     query.bind(1, before_clock_ms);
+    query.bind(2, static_cast<std::int64_t>(limit));
     return read_jobs(query);
   });
 }
@@ -606,6 +581,16 @@ bool SqliteJobStore::was_erased(std::string_view id) {
   });
 }
 
+std::vector<std::string> SqliteJobStore::erased_up_to(std::int64_t mark) {
+  return impl_->read([&](SqliteConnection& database) {
+    Prepared query(database, "SELECT id FROM erased WHERE rowid <= ?");
+    query.bind(1, mark);
+    std::vector<std::string> ids;
+    while (query.step()) ids.push_back(query.column(0).getString());
+    return ids;
+  });
+}
+
 std::int64_t SqliteJobStore::tidy(std::int64_t mark) {
   return impl_->write([&](SqliteConnection& database) {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
@@ -640,7 +625,6 @@ void SqliteJobStore::check_health() {
   });
   std::unique_lock lock(impl_->writing, kHealthPatience);
   if (!lock) throw StoreError(StoreError::Kind::kBusy, "writes to the job database do not end");
-  const Committed committed(*impl_->wal);
   translate_sqlite_errors([&] {
     SqliteConnection& database = impl_->database;
     // Whoever asks wants to know now, not to wait until it is well again.

@@ -1,4 +1,5 @@
-// Jobs in an embedded SQLite database: write-ahead log, synchronised at every commit.
+// Jobs in an embedded SQLite database, whose write-ahead log is synchronised by make_durable(), once for all who
+// ask for it together (server/jobs/sqlite_log.hpp).
 //
 // Opening migrates older schemas and refuses newer ones (server/jobs/sqlite_schema.hpp).
 #pragma once
@@ -60,6 +61,7 @@ class SqliteJobStore final : public JobStore {
   void count_lost_worker(std::string_view id) override;
   bool erase(std::string_view id) override;
   [[nodiscard]] bool was_erased(std::string_view id) override;
+  [[nodiscard]] std::vector<std::string> erased_up_to(std::int64_t mark) override;
   std::int64_t tidy(std::int64_t mark) override;
   [[nodiscard]] std::int64_t clock_ms() override;
   [[nodiscard]] StoreTotals totals() override;

@@ -40,7 +40,7 @@ SqliteLog::SqliteLog(std::filesystem::path database, SQLite::Database& writer)
       reader_([this](const std::stop_token& stop) { read_into_database(stop); }) {
   sqlite3_wal_hook(writer_.getHandle(), on_commit, this);
   // What was written before.
-  committed();
+  sync_.committed();
 }
 
 SqliteLog::~SqliteLog() {
@@ -52,6 +52,7 @@ SqliteLog::~SqliteLog() {
 
 int SqliteLog::on_commit(void* self, sqlite3* writer, const char* /*schema*/, int pages) {
   auto& log = *static_cast<SqliteLog*>(self);
+  log.sync_.committed();
   if (pages >= kVeryLongLog) {
     sqlite3_wal_checkpoint_v2(writer, nullptr, SQLITE_CHECKPOINT_PASSIVE, nullptr, nullptr);
   } else if (pages >= kLongLog) {
@@ -74,24 +75,31 @@ void SqliteLog::open_log() {
 }
 
 void SqliteLog::synchronise() {
-  if (!lost_trust_) {
-    open_log();
-    if (::fdatasync(descriptor_) == 0) return;
-    const int error = errno;
-    // Asked again, the kernel says yes: it takes pages that it could not write for written. SQLite, which
-    // has them still, then writes them to the database itself.
-    lost_trust_ = true;
-    throw_refused(error);
+  if (lost_trust_) begin_anew();
+  open_log();
+  if (::fdatasync(descriptor_) == 0) {
+    lost_trust_ = false;
+    return;
   }
+  const int error = errno;
+  lost_trust_ = true;
+  throw_refused(error);
+}
+
+// The kernel takes pages that it could not write for written, and says yes when asked again: what it has of the
+// log on the disk may have holes for ever. SQLite has the pages still. They go to the database, which is
+// synchronised, and the log is emptied; that it is empty lasts when it is synchronised by a descriptor that has
+// heard of no refusal.
+void SqliteLog::begin_anew() {
   translate_sqlite_errors([&] {
     SQLite::Database database(database_.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_NOFOLLOW);
     database.setBusyTimeout(kSqliteBusyPatienceMs);
     database.exec("PRAGMA synchronous = FULL");
     const int done = sqlite3_wal_checkpoint_v2(database.getHandle(), nullptr,
-                                               SQLITE_CHECKPOINT_FULL, nullptr, nullptr);
+                                               SQLITE_CHECKPOINT_TRUNCATE, nullptr, nullptr);
     if (done != SQLITE_OK) throw SQLite::Exception(database.getHandle(), done);
   });
-  lost_trust_ = false;
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
 }
 
 void SqliteLog::read_into_database(const std::stop_token& stop) {

@@ -25,8 +25,6 @@ class SqliteLog {
   SqliteLog(const SqliteLog&) = delete;
   SqliteLog& operator=(const SqliteLog&) = delete;
 
-  // Something may have been committed.
-  void committed() { sync_.committed(); }
   // Returns once what was committed before is on the disk. Throws StoreError.
   void reach() { sync_.reach(); }
 
@@ -34,14 +32,14 @@ class SqliteLog {
   static int on_commit(void* self, sqlite3* writer, const char* schema, int pages);
   void open_log();
   void synchronise();
+  void begin_anew();
   void read_into_database(const std::stop_token& stop);
 
   const std::filesystem::path database_;
   const std::filesystem::path log_;
   SQLite::Database& writer_;
-  int descriptor_ = -1;  // of the log; of whoever synchronises
-  bool lost_trust_ =
-      false;  // likewise: the disk refused once, and may have forgotten what it had not written
+  int descriptor_ = -1;      // of the log; of whoever synchronises
+  bool lost_trust_ = false;  // likewise: the disk refused, and the log on it may have holes
   GroupSync sync_{[this] { synchronise(); }};
 
   std::mutex mutex_;  // guards is_long_

@@ -32,6 +32,11 @@ void WatchedJobStore::failed(std::string_view operation, const std::exception& e
                                  {"failures", static_cast<std::int64_t>(failures_)}});
 }
 
+void WatchedJobStore::committed() {
+  const std::lock_guard lock(mutex_);
+  committed_ = true;
+}
+
 void WatchedJobStore::wrote() {
   const std::lock_guard lock(mutex_);
   last_write_ = Clock::now();
@@ -45,11 +50,11 @@ auto WatchedJobStore::watched(std::string_view operation, bool writes, const Wor
   try {
     if constexpr (std::is_void_v<decltype(work())>) {
       work();
-      if (writes) wrote();
+      if (writes) committed();
     } else {
       auto result = work();
       // What only reads says nothing of a disk that is full.
-      if (writes) wrote();
+      if (writes) committed();
       return result;
     }
   } catch (const std::exception& exception) {
@@ -66,7 +71,12 @@ InsertOutcome WatchedJobStore::insert(const Job& job,
 }
 
 void WatchedJobStore::make_durable() {
-  watched("make_durable", true, [&] { store_->make_durable(); });
+  watched("make_durable", false, [&] { store_->make_durable(); });
+  {
+    const std::lock_guard lock(mutex_);
+    if (!std::exchange(committed_, false)) return;
+  }
+  wrote();
 }
 
 std::int64_t WatchedJobStore::newest_copy() {
@@ -88,7 +98,7 @@ ClientUsage WatchedJobStore::usage(std::string_view client, std::int64_t time_ms
 std::optional<Job> WatchedJobStore::claim(std::int64_t time_ms) {
   // Finding nothing to start writes nothing.
   auto job = watched("claim", false, [&] { return store_->claim(time_ms); });
-  if (job) wrote();
+  if (job) committed();
   return job;
 }
 
@@ -168,6 +178,10 @@ bool WatchedJobStore::was_erased(std::string_view id) {
   return watched("was_erased", false, [&] { return store_->was_erased(id); });
 }
 
+std::vector<std::string> WatchedJobStore::erased_up_to(std::int64_t mark) {
+  return watched("erased_up_to", false, [&] { return store_->erased_up_to(mark); });
+}
+
 std::int64_t WatchedJobStore::tidy(std::int64_t mark) {
   return watched("tidy", true, [&] { return store_->tidy(mark); });
 }
@@ -185,7 +199,8 @@ void WatchedJobStore::check_health() {
     const std::lock_guard lock(mutex_);
     if (!failing_ && Clock::now() - last_write_ < kHealthyFor) return;
   }
-  watched("probe", true, [&] { store_->check_health(); });
+  watched("probe", false, [&] { store_->check_health(); });
+  wrote();
 }
 
 }  // namespace symcell::server

@@ -54,6 +54,7 @@ class WatchedJobStore final : public JobStore {
   void count_lost_worker(std::string_view id) override;
   bool erase(std::string_view id) override;
   [[nodiscard]] bool was_erased(std::string_view id) override;
+  [[nodiscard]] std::vector<std::string> erased_up_to(std::int64_t mark) override;
   std::int64_t tidy(std::int64_t mark) override;
   [[nodiscard]] std::int64_t clock_ms() override;
   [[nodiscard]] StoreTotals totals() override;
@@ -66,12 +67,15 @@ class WatchedJobStore final : public JobStore {
   template <class Work>
   auto watched(std::string_view operation, bool writes, const Work& work);
   void failed(std::string_view operation, const std::exception& exception);
+  // Something was written, and is known to last after the next make_durable(): only that says that the store works.
+  void committed();
   void wrote();
 
   std::unique_ptr<JobStore> store_;
   Metrics& metrics_;
   Logger& logger_;
-  std::mutex mutex_;  // guards all below
+  std::mutex mutex_;        // guards all below
+  bool committed_ = false;  // since the last make_durable()
   bool failing_ = false;
   std::uint64_t failures_ = 0;  // since it began to fail
   Clock::time_point told_{};

@@ -16,7 +16,7 @@ namespace {
 
 Result<void> write_cell(const SymmetryCellMesh& mesh, const std::filesystem::path& path) {
   FileWriter file(path);
-  const auto written = write_cell_archive(mesh, [&](std::string_view piece) {
+  auto written = write_cell_archive(mesh, [&](std::string_view piece) {
     file.write(piece);
     return true;
   });
@@ -50,8 +50,11 @@ Result<void> LocalEngine::run(const EngineJob& job, ExecutionContext& context) {
   auto outcome = mesh_model(*model, job.options, context);
   if (!outcome) return error_of(outcome);
 
-  SYMCELL_TRY(check_gates(judge(
-      job.options.fail_on, statistics_to_json(outcome->statistics, job.options, kind_of(*model)))));
+  if (!job.options.fail_on.empty()) {
+    SYMCELL_TRY(
+        check_gates(judge(job.options.fail_on,
+                          statistics_to_json(outcome->statistics, job.options, kind_of(*model)))));
+  }
   watch.lap();
   context.report(Phase::kWrite, 0.99, outcome->mesh.element_count());
   SYMCELL_TRY(write_cell(outcome->mesh, job.cell));
@@ -108,11 +111,10 @@ Result<void> LocalEngine::draw(const std::filesystem::path& path,
     if (names_faces(error.code)) at_fault.assign(error.elements.begin(), error.elements.end());
   }
   FileWriter file(picture);
-  const auto drawn =
-      write_model_glb(*model, at_fault, std::move(extras), [&](std::string_view piece) {
-        file.write(piece);
-        return true;
-      });
+  auto drawn = write_model_glb(*model, at_fault, std::move(extras), [&](std::string_view piece) {
+    file.write(piece);
+    return true;
+  });
   if (drawn) file.keep();
   return drawn;
 }

@@ -7,7 +7,7 @@ import unittest
 import xml.etree.ElementTree
 import pathlib
 
-from symcell_server import Server, binary, square
+from symcell_server import Server, binary, square, until
 
 
 class JobsTest(unittest.TestCase):
@@ -106,6 +106,10 @@ class JobsTest(unittest.TestCase):
         end = [block for block in text.split("\n\n") if block.startswith("event: end\n")]
         self.assertEqual(len(end), 1, text)
         self.assertEqual(json.loads(end[0].split("data: ", 1)[1])["id"], self.job["id"])
+        logged = until(lambda: [event for event in self.server.log_events()
+                                if event.get("path") == self.path + "/events"],
+                       "the stream stands in the log")
+        self.assertGreater(logged[0]["bytes"], len(text))
 
     def test_inspect_finds_the_fold(self):
         answer = self.server.post_json("/v1/inspect", {"model": square()})

@@ -8,7 +8,7 @@ export interface Warning {
   tolerance?: number;
 }
 
-export interface FoldCandidate {
+interface FoldCandidate {
   fold: number;
   error: number;
   accepted: boolean;

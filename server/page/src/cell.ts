@@ -6,7 +6,7 @@ export const kInner = -1;
 export const kLower = -2;
 export const kHigher = -3;
 
-export interface Histogram {
+interface Histogram {
   label: string;
   unit: string;
   binWidth: number;

@@ -37,9 +37,3 @@ export function qualityColour(share: number): Colour {
 export function cssOf(colour: Colour): string {
   return `rgb(${colour.join(' ')})`;
 }
-
-/** A glTF colour, linear light. */
-export function fromLinear(linear: readonly number[]): Colour {
-  return linear.slice(0, 3).map((c) =>
-    Math.round(255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055))) as Colour;
-}

@@ -9,7 +9,7 @@ const textOptions = ['max_edge', 'max_area', 'min_angle', 'max_volume', 'radius_
 const choiceOptions = ['order', 'repair'];
 const switchOptions = ['ignore_markers', 'keep_boundary', 'delaunay'];
 
-export function numberOr(text: string): unknown {
+function numberOr(text: string): unknown {
   const value = Number(text.replace(',', '.'));
   return Number.isFinite(value) ? value : text;
 }
@@ -77,19 +77,19 @@ export function showGroups(picture: Picture): void {
   }));
 }
 
-export const presets: Record<string, number | null> = { coarse: null, normal: 24, fine: 60 };
+const presets: Record<string, number | null> = { coarse: null, normal: 24, fine: 60 };
 
 export function showPresets(): void {
   $('presets').replaceChildren(...Object.keys(presets).map((name) => button(name, () => applyPreset(name), { 'data-preset': name })));
   markPreset();
 }
 
-export function presetEdge(name: string): string {
+function presetEdge(name: string): string {
   const parts = presets[name];
   return parts && state.inspection ? Number((state.inspection.diameter / parts).toPrecision(2)).toString() : '';
 }
 
-export function markPreset(): void {
+function markPreset(): void {
   const free = input('max_area').value === '' && input('max_volume').value === '';
   for (const element of document.querySelectorAll<HTMLElement>('[data-preset]')) {
     const chosen = free && presetEdge(element.dataset.preset!) === input('max_edge').value.trim();

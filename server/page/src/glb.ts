@@ -1,6 +1,6 @@
 // The model's picture: as much of binary glTF as the service writes.
 
-export interface PictureGroup {
+interface PictureGroup {
   name: string;
   colour: [number, number, number];
   lines: boolean;

@@ -11,8 +11,8 @@ export function onOpen(act: (id: string) => void): void {
   openJob = act;
 }
 
-export const thumbnailPrefix = 'symcell-picture-';
-export const mostThumbnails = 60;
+const thumbnailPrefix = 'symcell-picture-';
+const mostThumbnails = 60;
 
 export function keepThumbnail(id: string): void {
   if (!viewer) return;
@@ -26,7 +26,7 @@ export function keepThumbnail(id: string): void {
   }
 }
 
-export let nextJobs: string | null = null;
+let nextJobs: string | null = null;
 
 export async function showJobs(more = false): Promise<void> {
   if (!$<HTMLDialogElement>('jobs').open) $<HTMLDialogElement>('jobs').showModal();
@@ -42,7 +42,7 @@ export async function showJobs(more = false): Promise<void> {
   }
 }
 
-export function jobItem(job: Job): HTMLElement {
+function jobItem(job: Job): HTMLElement {
   const picture = localStorage.getItem(thumbnailPrefix + job.id);
   const name = job.model.name ?? job.model.format;
   const words = job.state === 'succeeded' ? `${figure(job.progress.elements)} elements` : job.state === 'failed' ? job.error?.title ?? 'failed' : job.state;

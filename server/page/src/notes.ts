@@ -16,13 +16,13 @@ export function problemOf(error: unknown): Problem {
   return { code: 'page', detail: error instanceof Error ? error.message : String(error) };
 }
 
-export interface Mend { text: string; act: () => void }
+interface Mend { text: string; act: () => void }
 
-export function mendOptions(text: string, change: () => void): Mend {
+function mendOptions(text: string, change: () => void): Mend {
   return { text, act: () => { change(); lookAgain(); } };
 }
 
-export function mendsOf(warning: Warning | Problem): Mend[] {
+function mendsOf(warning: Warning | Problem): Mend[] {
   const set = (name: string, value: string) => (): void => { $<HTMLInputElement>(name).value = value; };
   const check = (name: string) => (): void => { input(name).checked = true; };
   const mends: Mend[] = [];
@@ -52,7 +52,7 @@ export function mendsOf(warning: Warning | Problem): Mend[] {
   return mends;
 }
 
-export function mendButtons(mends: Mend[]): HTMLElement | null {
+function mendButtons(mends: Mend[]): HTMLElement | null {
   if (mends.length === 0) return null;
   return h('div', { class: 'mend' }, ...mends.map((mend) => button(mend.text, mend.act)));
 }
@@ -62,14 +62,14 @@ export function note(warning: Warning): HTMLElement {
            warning.mend ? h('p', { class: 'dim' }, capital(warning.mend), '.') : null, mendButtons(mendsOf(warning)));
 }
 
-export function capital(text: string): string {
+function capital(text: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
-export const mostCharacters = 220;
+const mostCharacters = 220;
 
 /** The beginning of what may list dozens of places, and whether that is not all. */
-export function shortened(text: string): [string, boolean] {
+function shortened(text: string): [string, boolean] {
   if (text.length <= mostCharacters) return [text, false];
   const colon = text.indexOf(': ');
   if (colon > 20 && colon < mostCharacters) {

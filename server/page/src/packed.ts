@@ -1,6 +1,6 @@
 // Packed JSON (?format=json&packed=true) as typed arrays.
 
-export type Numbers = Float32Array | Float64Array | Uint8Array | Uint16Array | Uint32Array | Int32Array;
+type Numbers = Float32Array | Float64Array | Uint8Array | Uint16Array | Uint32Array | Int32Array;
 
 interface PackedArray {
   type: string;
@@ -34,7 +34,7 @@ function bytesOf(base64: string): ArrayBuffer {
   return bytes.buffer;
 }
 
-export function unpack(array: PackedArray): Numbers {
+function unpack(array: PackedArray): Numbers {
   const count = array.shape.reduce((product, extent) => product * extent, 1);
   if (array.data === undefined) return new Int32Array(count).fill(array.value ?? 0);
   const bytes = bytesOf(array.data);

@@ -44,7 +44,7 @@ export function select(elements: Set<number> | null, words: string, pressed: HTM
   for (const bar of document.querySelectorAll('#histogram button')) bar.setAttribute('aria-pressed', String(bar === pressed));
 }
 
-export function showHistogram(cell: Cell): void {
+function showHistogram(cell: Cell): void {
   const { counts, binWidth, label } = cell.histogram;
   const most = Math.max(...counts, 1);
   const last = counts.length - 1;
@@ -77,7 +77,7 @@ export const formats: [string, string, 0 | 2 | 3][] = [
   ['msh2', 'Gmsh 2', 0], ['json', 'programs', 0], ['vtp', 'boundary', 0], ['glb', 'viewers', 0], ['svg', 'picture', 2], ['stl', 'surface', 3],
 ];
 
-export function showDownloads(job: Job, solid: boolean): void {
+function showDownloads(job: Job, solid: boolean): void {
   const rows: Node[] = [];
   for (const [format, purpose, dimension] of formats) {
     if (dimension !== 0 && dimension !== (solid ? 3 : 2)) continue;
@@ -92,12 +92,12 @@ export function showDownloads(job: Job, solid: boolean): void {
       fileLink(`/v1/jobs/${job.id}/model`, job.model.name ?? 'model', 'model')));
 }
 
-export function fileLink(path: string, name: string, text: string): HTMLElement {
+function fileLink(path: string, name: string, text: string): HTMLElement {
   return h('a', { href: path, download: name, onclick: (event: Event) => fetchWithKey(event, path, name) }, text);
 }
 
 // A link carries no key.
-export function fetchWithKey(event: Event, path: string, name: string): void {
+function fetchWithKey(event: Event, path: string, name: string): void {
   if (!sessionStorage.getItem('symcell-key')) return;
   event.preventDefault();
   void call(path).then((response) => response.blob()).then((blob) => {

@@ -4,7 +4,7 @@ import type { Cell } from './cell';
 import { $, h } from './dom';
 import { type Legend, Viewer } from './viewer';
 
-export interface State {
+interface State {
   file: File | null;
   inspection: Inspection | null;
   job: Job | null;

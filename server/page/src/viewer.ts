@@ -14,9 +14,9 @@ import {
 import type { Picture } from './glb';
 import { makeSurfaceMaterial, noClip, SurfaceMaterial } from './shading';
 
-export type Colouring = 'groups' | 'quality' | 'regions';
+type Colouring = 'groups' | 'quality' | 'regions';
 export interface Legend { name: string; css: string }
-export interface Frame { fold: number; axis: { origin: number[]; direction: number[] }; dimension: 2 | 3 }
+interface Frame { fold: number; axis: { origin: number[]; direction: number[] }; dimension: 2 | 3 }
 
 // More triangles than this in all copies together, and the copies that go beyond are left out.
 const mostTriangles = 24_000_000;

@@ -362,5 +362,79 @@ TEST_F(Cli, CompletionKnowsCommandsAndFlags) {
   EXPECT_EQ(symcell("completion tcsh").exit_code, 2);
 }
 
+TEST_F(Cli, CompletionOffersTheValuesThatThereAre) {
+  const std::string script = symcell("completion bash").out;
+  EXPECT_NE(script.find("completion:completion) words=\"bash zsh fish man\""), std::string::npos);
+  EXPECT_NE(script.find("verify:--repair) words=\"none safe all\""), std::string::npos);
+  EXPECT_EQ(script.find('{' + std::string("none")), std::string::npos) << "words of the parser";
+  EXPECT_NE(symcell("completion fish").out.find("-a 'bash zsh fish man'"), std::string::npos);
+  test::write_file(file("script"), script);
+  test::write_file(file("try"), "source " + file("script") +
+                                    "\nCOMP_WORDS=(symcell completion '')\nCOMP_CWORD=2\n_symcell\n"
+                                    "echo \"${COMPREPLY[@]}\"\n");
+  const std::string out = file("offered");
+  ASSERT_EQ(std::system(("bash " + file("try") + " > " + out).c_str()), 0);
+  EXPECT_EQ(test::read_file(out), "bash zsh fish man\n");
+}
+
+TEST_F(Cli, VerifySaysHowToCheckACellThatIsNoVtu) {
+  ASSERT_EQ(symcell("mesh " + ring_ + " --cell " + file("c.json")).exit_code, 0);
+  const Outcome told = symcell("verify " + file("c.json"));
+  EXPECT_EQ(told.exit_code, 3);
+  EXPECT_NE(told.err.find("symcell convert " + file("c.json")), std::string::npos) << told.err;
+}
+
+TEST_F(Cli, ConvertAndTransferKeepAMemoryLimit) {
+  ASSERT_EQ(symcell("mesh " + ring_ + " --cell " + file("c.json")).exit_code, 0);
+  const std::string convert = "convert " + file("c.json") + " --full " + file("f.vtu");
+  EXPECT_EQ(symcell(convert + " --memory-limit 1").exit_code, 2) << "the program itself needs more";
+  EXPECT_EQ(symcell(convert + " --memory-limit 2000").exit_code, 0);
+  // A list that takes more than there is.
+  std::string large = "{\"type\":\"cell\",\"nodes\":[";
+  for (int i = 0; i < 3'000'000; ++i) large += "[0.123456789012345,0.123456789012345,0],";
+  test::write_file(file("large.json"), large + "[0,0,0]]}");
+  std::filesystem::remove(file("f.vtu"));
+  const Outcome limited =
+      symcell("convert " + file("large.json") + " --full " + file("f.vtu") + " --memory-limit 200");
+  EXPECT_EQ(limited.exit_code, 4) << limited.err;
+  EXPECT_NE(limited.err.find("memory_limit"), std::string::npos) << limited.err;
+  EXPECT_FALSE(std::filesystem::exists(file("f.vtu")));
+  EXPECT_EQ(symcell("transfer " + file("large.json") + " --cell " + file("large.json") +
+                    " --full " + file("f.vtu") + " --memory-limit 200")
+                .exit_code,
+            4);
+}
+
+TEST_F(Cli, ABatchTakesNothingForAModelThatABatchHasLeft) {
+  const std::filesystem::path in = folder_.path() / "in";
+  std::filesystem::create_directories(in);
+  std::filesystem::copy_file(ring_, in / "ring.json");
+  const std::string batch =
+      "batch " + in.string() + " --recursive --format json --out " + (in / "out").string();
+  for (int times = 0; times < 2; ++times) {
+    const Outcome done = symcell(batch);
+    EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
+    EXPECT_NE(done.out.find("1 models"), std::string::npos) << done.out;
+  }
+  const Outcome same = symcell("batch " + in.string() + " --out " + in.string());
+  EXPECT_EQ(same.exit_code, 2);
+  EXPECT_NE(same.err.find("--out"), std::string::npos) << same.err;
+}
+
+// The signal comes to the batch alone, which passes it on.
+TEST_F(Cli, ABatchEndsWithASignal) {
+  const std::filesystem::path in = folder_.path() / "in";
+  std::filesystem::create_directories(in);
+  for (const char* name : {"a.json", "b.json", "c.json"}) {
+    std::filesystem::copy_file(ring_, in / name);
+  }
+  const Outcome stopped =
+      symcell("batch " + in.string() + " --workers 1 --max-area 1e-6 --out " + file("out"),
+              "timeout --foreground -s TERM -k 60 2 ");
+  EXPECT_EQ(stopped.exit_code, 124);
+  EXPECT_NE(stopped.out.find("3 models, 3 without"), std::string::npos) << stopped.out;
+  EXPECT_NE(stopped.err.find("stopped by a signal"), std::string::npos) << stopped.err;
+}
+
 }  // namespace
 }  // namespace symcell

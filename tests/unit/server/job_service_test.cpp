@@ -168,17 +168,6 @@ TEST_F(JobServiceTest, TheServersLimitsCapTheOptions) {
   EXPECT_EQ(service_.jobs->capped(options).max_elements, 7U);
 }
 
-TEST_F(JobServiceTest, WaitingEndsWithTheJobOrAtTheDeadline) {
-  const std::string id = occupy_worker();
-  const auto unfinished =
-      service_.jobs->wait_finished(id, ChangeSignal::Clock::now() + std::chrono::milliseconds(20));
-  EXPECT_EQ(unfinished->state, JobState::kRunning);
-  service_.engine.open_gate();
-  const auto finished =
-      service_.jobs->wait_finished(id, ChangeSignal::Clock::now() + std::chrono::seconds(10));
-  EXPECT_EQ(finished->state, JobState::kSucceeded);
-}
-
 TEST_F(JobServiceTest, AStoppingServiceRefusesJobs) {
   service_.jobs->begin_stop();
   EXPECT_EQ(service_.submit().status, SubmitStatus::kStopping);
