@@ -169,7 +169,7 @@ TEST(Shape, DetectionIsFastAtAnyTolerance) {
     ExecutionContext context;
     ASSERT_TRUE(inspect_pslg(pslg, within(tolerance), context));
     const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    EXPECT_LT(seconds, 1.5);  // a third is usual; sanitizers and a busy machine take more
+    EXPECT_LT(seconds, 30);  // a third of one is usual; what looks at all pairs takes minutes
   }
 }
 
