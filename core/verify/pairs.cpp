@@ -49,7 +49,7 @@ class PairChecker {
       ++count;
       const double off = distance(turns_.rotated(cell_.points[i], 1), cell_.points[at(j)]);
       worst = std::max(worst, off);
-      if (off <= tolerances_.told) continue;
+      if (off <= tolerances_.paired) continue;
       flaws.note([&] { return node_name(i) + " is off its pair by " + shown(off); });
     }
     return flaws.report(checks, "cell.pairs",
@@ -71,7 +71,7 @@ class PairChecker {
   }
   [[nodiscard]] bool on_axis(std::size_t node) const {
     return turns_.from_axis(cell_.points[node]) <=
-           (own_pair(node) ? tolerances_.told : tolerances_.untold);
+           (own_pair(node) ? tolerances_.paired : tolerances_.unpaired);
   }
 
   bool look_at_axis(Checks& checks) const {
@@ -94,7 +94,7 @@ class PairChecker {
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       if (on_axis(i)) continue;
       const auto hit = tree.nearest(turns_.rotated(cell_.points[i], 1));
-      if (hit.distance > tolerances_.untold || pairs_[i] == hit.point) continue;
+      if (hit.distance > tolerances_.unpaired || pairs_[i] == hit.point) continue;
       // Half a turn goes both ways.
       if (turns_.fold() == 2 && at(pairs_[at(hit.point)]) == i) continue;
       flaws.note([&] {

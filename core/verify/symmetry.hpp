@@ -36,11 +36,11 @@ struct CellBounds {
   std::vector<std::size_t> higher;
 };
 
-// How far what is told to be one may be apart, and how near what is not told so has to be for it to
-// be one all the same.
+// How far apart two nodes may be that the file pairs, and how near those that it does not pair have
+// to be for them to be a pair all the same.
 struct PairTolerances {
-  double told = 0;
-  double untold = 0;  // at most `told`
+  double paired = 0;
+  double unpaired = 0;  // at most `paired`
 };
 
 // cell.pairs, .pairs_injective, .axis_self, .pairs_complete.  False if the full mesh cannot be

@@ -84,8 +84,8 @@ class MeshRun {
       static_cast<void>(write_reports(make_report(made.error(), {})));
       return error_of(made);
     }
-    const auto told = nlohmann::ordered_json::parse(*made, nullptr, false);
-    const MeshReport report = make_report({}, told);
+    const auto document = nlohmann::ordered_json::parse(*made, nullptr, false);
+    const MeshReport report = make_report({}, document);
     const auto accepted = check_gates(report.gates);
     done = commit(accepted.has_value());
     if (done) done = write_reports(report);
@@ -106,16 +106,16 @@ class MeshRun {
     if (kept) error.message += "; the model and the options are kept in " + kept->string();
   }
 
-  // `told`: what the child process returned; null if it failed.
+  // `document`: what the child process returned; null if it failed.
   [[nodiscard]] MeshReport make_report(std::optional<Error> error,
-                                       const nlohmann::ordered_json& told) {
+                                       const nlohmann::ordered_json& document) {
     MeshReport report;
     report.model = arguments_.model;
     report.error = std::move(error);
     report.seconds = total_.lap() / 1000;
-    if (!told.is_object()) return report;
-    report.warnings = told.value("warnings", nlohmann::ordered_json::array());
-    report.statistics = told.value("statistics", nlohmann::ordered_json());
+    if (!document.is_object()) return report;
+    report.warnings = document.value("warnings", nlohmann::ordered_json::array());
+    report.statistics = document.value("statistics", nlohmann::ordered_json());
     report.gates = judge(options_.fail_on, report.statistics);
     if (const auto accepted = check_gates(report.gates); !accepted) report.error = accepted.error();
     return report;
@@ -153,10 +153,10 @@ class MeshRun {
       return fail(ErrorCode::kCancelled, "cancelled while writing; no output was left");
     }
     if (!done) return error_of(done);
-    nlohmann::ordered_json told;
-    told["warnings"] = warnings_to_json(outcome->statistics.warnings);
-    told["statistics"] = statistics_to_json(outcome->statistics, options_, kind_);
-    return told.dump();
+    nlohmann::ordered_json document;
+    document["warnings"] = warnings_to_json(outcome->statistics.warnings);
+    document["statistics"] = statistics_to_json(outcome->statistics, options_, kind_);
+    return document.dump();
   }
 
   Result<void> prepare() {

@@ -15,12 +15,12 @@
 #include "core/base/index.hpp"
 #include "core/base/union_find.hpp"
 #include "core/geometry/rotation.hpp"
+#include "core/geometry/tolerances.hpp"
 #include "core/solid/groups/face_regions.hpp"
 
 namespace symcell::solid {
 namespace {
 
-constexpr double kRadiansADegree = std::numbers::pi / 180;
 // A scan may have a sharp edge at every other triangle, and a file may name each of its parts. The largest so many
 // faces are groups.
 constexpr std::size_t kMostGroups = 400;

@@ -9,12 +9,12 @@
 #include "core/base/index.hpp"
 #include "core/geometry/axis_frame.hpp"
 #include "core/geometry/symmetric_eigen.hpp"
+#include "core/geometry/tolerances.hpp"
 #include "core/solid/groups/face_regions.hpp"
 
 namespace symcell::solid {
 namespace {
 
-constexpr double kRadiansADegree = std::numbers::pi / 180;
 // Vertices may be off the surface by so many times the noise of coordinates, or so much of its radius
 // (of a plane: of the face's extent): exports with five digits are.
 constexpr double kNoises = 4;
