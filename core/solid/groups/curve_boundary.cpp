@@ -278,7 +278,8 @@ Result<SymmetryCellMesh> CurvedBoundary::elevate(const SymmetryCellMesh& cell,
     }
   }
   std::vector<CurvedSide> sides;
-  for (const auto& [key, side] : edges) {
+  for (const auto& edge : edges) {
+    const auto& side = edge.second;
     if (!is_curved(side.constraints)) continue;
     const auto place = [&](std::int32_t n) {
       const OrbitVertex v = cell.nodes[at(n)];

@@ -242,11 +242,14 @@ void SurfaceSectorSource::choose_candidates() {
   }
   const double sector = 2 * std::numbers::pi / symmetry_.fold;
   std::vector<double> angles;
-  for (const Point3& p : full_.points) {
-    if (std::hypot(p.x, p.y) <= tolerance_) continue;
-    const double angle = std::fmod(std::atan2(p.y, p.x) + 2 * std::numbers::pi, sector);
-    angles.push_back(angle);
-  }
+  const auto add_angles = [&](double least_radius) {
+    for (const Point3& p : full_.points) {
+      if (std::hypot(p.x, p.y) <= least_radius) continue;
+      angles.push_back(std::fmod(std::atan2(p.y, p.x) + 2 * std::numbers::pi, sector));
+    }
+  };
+  add_angles(tolerance_);
+  if (angles.empty()) add_angles(0);  // a rod thinner than the tolerance
   std::sort(angles.begin(), angles.end());
   struct Gap {
     double width, middle;

@@ -41,6 +41,8 @@ constexpr double kFlatHoleRel = 1e-6;
 // Shares of the tolerance up to which edges are collapsed, tried until the surface does not cross
 // itself.
 constexpr std::array<double, 3> kJoinShares = {0.1, 0.03, 0.01};
+// Of the volume: what that may change, as much as a sector's may.
+constexpr double kJoinVolumeRel = 1e-3;
 // Of the tolerance. Wraps narrower than the least share of the diameter would take forever.
 constexpr double kWrapAlpha = 10;
 constexpr double kWrapOffset = 0.5;
@@ -502,12 +504,17 @@ class Cleaner {
   }
 
   // Edges far below the tolerance say nothing of the shape, and would be resolved by tetrahedra of
-  // their size: a bushing took 170,000 for 50,000.
+  // their size: a bushing took 170,000 for 50,000. But of a plate or a rod they may be the thickness:
+  // a box of 12 triangles lost two thirds of its volume with them.
   Result<void> join_near() {
     if (untouched()) return {};
+    const Point3 centre = 0.5 * (result_.box.low + result_.box.high);
+    const double volume = enclosed_volume(surface(), centre);
     for (const double share : kJoinShares) {
       auto joined = collapse_short_edges(surface(), share * tolerance());
       if (!joined) continue;
+      const double change = std::abs(enclosed_volume(*joined, centre) - volume);
+      if (!(change <= kJoinVolumeRel * std::abs(volume))) continue;
       auto crossing = self_intersections(*joined, 1, context_);
       if (!crossing) return error_of(crossing);
       if (!crossing->empty()) continue;

@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
 #include <string>
+#include <tuple>
 
 #include "core/geometry/rotation.hpp"
 #include "tests/support/surface_builders.hpp"
@@ -125,6 +129,39 @@ TEST(MeshModel, LeastEdgesOfSolidsEndWhatBoundsAskFor) {
   EXPECT_GT(exempt_of(*outcome, "min_edge"), 0U);
   EXPECT_GE(shortest_edge(outcome->mesh), 0.3);
 }
+
+// Plates and rods much thinner than the tolerance, which is a share of their length: their thickness is
+// no flaw to be mended, and the tolerance leaves room for no other cut than the right one.
+class ThinSurface : public testing::TestWithParam<std::tuple<bool, double, std::int32_t>> {};
+
+TEST_P(ThinSurface, KeepsItsVolumeAndItsFold) {
+  const auto [is_rod, thickness, sides] = GetParam();
+  const TriangleSurface surface = is_rod ? box_surface({-0.5 * thickness, -0.5 * thickness, 0},
+                                                       {0.5 * thickness, 0.5 * thickness, 1})
+                                         : ring_surface(sides, 1, 0.5, thickness);
+  const std::int32_t fold = is_rod ? 4 : sides;
+  const double angle = 2 * std::numbers::pi / sides;
+  const double volume =
+      is_rod ? thickness * thickness : 0.5 * sides * std::sin(angle) * (1 - 0.25) * thickness;
+  MeshOptions options;
+  options.plain = true;
+  options.fold = fold;
+  options.axis_origin = Point3{0, 0, 0};
+  options.axis_direction = Point3{0, 0, 1};
+  ExecutionContext context;
+  const auto outcome = mesh_model(surface, options, context);
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_NEAR(fold * outcome->statistics.cell.measure, volume, 1e-3 * volume);
+  options = {};
+  const auto inspected = inspect_model(surface, options, context);
+  ASSERT_TRUE(inspected) << inspected.error().message;
+}
+
+INSTANTIATE_TEST_SUITE_P(Samples,
+                         ThinSurface,
+                         testing::Combine(testing::Bool(),
+                                          testing::Values(1e-5, 1e-4, 1e-3, 1e-2),
+                                          testing::Values(4, 6)));
 
 }  // namespace
 }  // namespace symcell
