@@ -21,6 +21,12 @@ constexpr double kSameCircleRel = 1e-9;
 // Radians: a little more than the coarsest chord that can be asked for.
 constexpr double kCoarsest = 1.06;
 
+// A node of an arc may be off it by the asymmetry of the arc's ends and by as much again where it was
+// averaged, on either side, and an arc's middle moves with both of its ends.
+constexpr double kAsymmetries = 8;
+// Of the diameter: what is farther from the nearest copy has none.
+constexpr double kNearMissRel = 1e-3;
+
 double diameter_of(const std::vector<Point2>& points) {
   Point2 low = points.front(), high = low;
   for (const Point2 p : points) {
@@ -28,6 +34,26 @@ double diameter_of(const std::vector<Point2>& points) {
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   }
   return distance(low, high);
+}
+
+// How far ends of arcs are from the nearest end that is turned onto them, at most.
+double asymmetry_of_arcs(const Pslg& pslg,
+                         const std::function<Point3(const Point3&)>& rotate,
+                         double near) {
+  std::vector<Point3> ends;
+  for (std::size_t s = 0; s < pslg.segments.size(); ++s) {
+    if (pslg.bulge(s) == 0) continue;
+    for (const std::int32_t v : {pslg.segments[s].a, pslg.segments[s].b}) {
+      ends.push_back({pslg.vertices[at(v)].x, pslg.vertices[at(v)].y, 0});
+    }
+  }
+  const PointTree tree(ends);
+  double worst = 0;
+  for (const Point3& p : ends) {
+    const double miss = tree.nearest(rotate(p)).distance;
+    if (miss < near) worst = std::max(worst, miss);
+  }
+  return worst;
 }
 
 class ArcsAtNodes {
@@ -142,9 +168,11 @@ class ArcsAtNodes {
 
 }  // namespace
 
-Result<std::optional<ModelAsMeshed>> model_as_meshed(const Pslg& model,
-                                                     std::span<const Point3> corners,
-                                                     const VerifyOptions& options) {
+Result<std::optional<ModelAsMeshed>> model_as_meshed(
+    const Pslg& model,
+    std::span<const Point3> corners,
+    const std::function<Point3(const Point3&)>& rotate,
+    const VerifyOptions& options) {
   MeshOptions asked;
   asked.sector = options.sector;
   asked.center = options.center;
@@ -162,7 +190,11 @@ Result<std::optional<ModelAsMeshed>> model_as_meshed(const Pslg& model,
     return std::optional<ModelAsMeshed>{std::move(result)};
   }
   const double diameter = diameter_of(pslg.vertices);
-  const double tolerance = std::max(kOnArcRel, options.model_tolerance_rel.value_or(0)) * diameter;
+  double tolerance = std::max(kOnArcRel, options.model_tolerance_rel.value_or(0)) * diameter;
+  if (rotate && !options.model_tolerance_rel) {
+    tolerance = std::max(tolerance,
+                         kAsymmetries * asymmetry_of_arcs(pslg, rotate, kNearMissRel * diameter));
+  }
   ArcsAtNodes arcs_at_nodes(std::move(pslg), corners, tolerance, kSameCircleRel * diameter);
   return std::optional<ModelAsMeshed>{arcs_at_nodes.run()};
 }

@@ -2,6 +2,7 @@
 // its arcs as chords between the nodes that the mesh has on them.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,9 +21,12 @@ struct ModelAsMeshed {
 };
 
 // Nothing where the model is taken as it is.
-// `corners`: of all elements of the full mesh.  Errors: those of plane::prepare_input.
-[[nodiscard]] Result<std::optional<ModelAsMeshed>> model_as_meshed(const Pslg& model,
-                                                                   std::span<const Point3> corners,
-                                                                   const VerifyOptions& options);
+// `corners`: of all elements of the full mesh.  `rotate`: by one step of the cell's fold; null: that is 1.
+// Errors: those of plane::prepare_input.
+[[nodiscard]] Result<std::optional<ModelAsMeshed>> model_as_meshed(
+    const Pslg& model,
+    std::span<const Point3> corners,
+    const std::function<Point3(const Point3&)>& rotate,
+    const VerifyOptions& options);
 
 }  // namespace symcell::internal

@@ -1,6 +1,7 @@
 #include "core/verify/verify_mesh.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -107,7 +108,9 @@ class Verifier {
     if (const auto* surface = std::get_if<TriangleSurface>(model_)) return make_whole(*surface);
     const auto* pslg = std::get_if<Pslg>(model_);
     if (pslg == nullptr) return true;
-    auto made = internal::model_as_meshed(*pslg, corners_of_full(turns), options_);
+    std::function<Point3(const Point3&)> rotate;
+    if (cell_.fold > 1) rotate = [&](const Point3& p) { return turns.rotated(p, 1); };
+    auto made = internal::model_as_meshed(*pslg, corners_of_full(turns), rotate, options_);
     if (!made) {
       checks_.add("model.valid", false, made.error().message);
       return false;

@@ -60,6 +60,34 @@ TEST(Arcs, RingOfOrderTwoHasItsArea) {
   }
 }
 
+// Joints that are off by more than the nodes' rounding move the arcs, whose nodes are found all the same;
+// what is off by more than that is found, too.
+TEST(Arcs, ModelsThatAreNearlySymmetricAreVerified) {
+  for (const double off : {1e-7, 1e-5, 1e-4}) {
+    Pslg petals;
+    for (int i = 0; i < 3; ++i) {
+      const double angle = 2 * std::numbers::pi * i / 3;
+      petals.vertices.push_back({std::cos(angle), std::sin(angle)});
+      petals.segments.push_back({i, (i + 1) % 3, 1});
+      petals.bulges.push_back(0.5);
+    }
+    petals.vertices[0].x += off;
+    MeshOptions options;
+    options.fold = 3;
+    options.symmetry_tolerance_rel = 1e-3;
+    options.max_area = 0.01;
+    MeshOutcome made = meshed(petals, options);
+    expect_verified(petals, made);
+    const auto node = made.mesh.nodes[static_cast<std::size_t>(made.mesh.boundary[0])];
+    Point3& p = made.mesh.orbit_points[static_cast<std::size_t>(node.orbit)];
+    p = (1 + 100 * off) * p;
+    const MeshData cell =
+        read_vtu(test::written(made.mesh, MeshPart::kCell, MeshFormat::kVtu)).value();
+    const Model model = petals;
+    EXPECT_FALSE(verify_mesh(cell, nullptr, &model, {}).ok()) << off;
+  }
+}
+
 TEST(Arcs, VerticesOfRefinementLieOnTheArcs) {
   Pslg ring = model_of(kRing);
   MeshOptions options;
