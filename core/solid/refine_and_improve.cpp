@@ -195,8 +195,8 @@ Result<void> improve(std::optional<Editor>& working,
   surgery.keep_size();
   Improver improver(surgery, criteria, context);
   const std::size_t left = count_bad(*working, criteria);
-  if (mesh.tet_count() <= work.limits.most_followed &&
-      work.limits.is_many_bad(left, mesh.tet_count())) {
+  const double share = static_cast<double>(left) / static_cast<double>(mesh.tet_count());
+  if (mesh.tet_count() <= work.limits.most_followed && share > work.limits.lost_share) {
     return improver.mend(goal);
   }
   const double costly_deg = std::max(work.limits.costly_goal_deg, options.min_dihedral_deg);
