@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <tuple>
 
-#include "core/solid/refine_and_improve.hpp"
 #include "tests/unit/core/solid/solid_checks.hpp"
 
 namespace symcell::solid {
@@ -182,32 +180,6 @@ TEST(SolidRefiner, LessDepthMakesFewerPoints) {
     vertices[i] = run.solid.mesh.vertex_slots();
   }
   EXPECT_LE(vertices[0], vertices[1]);
-}
-
-// With limits that take any bad tetrahedron for a cascade the mesh is what the first round left.
-TEST(RefineAndImprove, CascadesAreUndone) {
-  std::size_t smaller = 0;
-  for (const std::int32_t fold : {1, 6, 64}) {
-    test::PrismShape s = test::prism_shape(fold);
-    s.height = 0.05;
-    const Job run(s, 0);
-    RoundLimits eager;
-    eager.many_bad = 0;
-    eager.many_bad_share = 0;
-    eager.cascade = eager.late_cascade = -1;
-    eager.rounds = eager.rounds_if_large = 1;
-    RoundLimits patient = eager;
-    patient.cascade = patient.late_cascade = 1e9;
-    ExecutionContext context;
-    const std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
-    const auto undone = refine_and_improve(run.solid, run.options, any, context, eager);
-    const auto done = refine_and_improve(run.solid, run.options, any, context, patient);
-    ASSERT_TRUE(undone && done);
-    EXPECT_TRUE(test::is_valid(undone->solid.mesh, run.volume));
-    EXPECT_GE(undone->guarded, done->guarded);
-    smaller += undone->count() < done->count() ? 1 : 0;
-  }
-  RecordProperty("smaller", static_cast<int>(smaller));
 }
 
 }  // namespace
