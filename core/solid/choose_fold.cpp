@@ -36,7 +36,10 @@ Result<SectorLoad> sample(const SectorSource& source,
   auto solid = starts.next(context);
   effort = starts.effort();
   if (!solid) return error_of(solid);
-  auto refined = refine_and_improve(std::move(*solid), options, most, context, tuning.rounds);
+  // Cells are compared by their numbers of tetrahedra: one that was left with bad ones would seem small.
+  RoundLimits rounds = tuning.rounds;
+  rounds.cascade = rounds.late_cascade = std::numeric_limits<double>::infinity();
+  auto refined = refine_and_improve(std::move(*solid), options, most, context, rounds);
   if (!refined) return error_of(refined);
   return SectorLoad(refined->solid.mesh);
 }
