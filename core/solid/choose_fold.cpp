@@ -36,10 +36,7 @@ Result<SectorLoad> sample(const SectorSource& source,
   auto solid = starts.next(context);
   effort = starts.effort();
   if (!solid) return error_of(solid);
-  // Cells are compared by their numbers of tetrahedra: one that was left with bad ones would seem small.
-  RoundLimits rounds = tuning.rounds;
-  rounds.cascade = rounds.late_cascade = std::numeric_limits<double>::infinity();
-  auto refined = refine_and_improve(std::move(*solid), options, most, context, rounds);
+  auto refined = refine_and_improve(std::move(*solid), options, most, context, tuning.rounds);
   if (!refined) return error_of(refined);
   return SectorLoad(refined->solid.mesh);
 }

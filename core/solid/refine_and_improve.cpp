@@ -133,8 +133,10 @@ Result<bool> refine_unless_cascading(std::optional<Editor>& editor,
                                      ExecutionContext& context,
                                      Work& work) {
   const RoundLimits& limits = work.limits;
-  // What is too large must not stay.
-  if (!limits.is_many_bad(bad, mesh.tet_count()) || has_too_large(*editor, criteria)) {
+  // What is too large must not stay. Where facets are kept as given, no other mesh has a better boundary:
+  // at large folds of a ring what looked like a cascade was made up for.
+  if (limits.most_followed == 0 || !limits.is_many_bad(bad, mesh.tet_count()) ||
+      has_too_large(*editor, criteria)) {
     SYMCELL_TRY(refine(*editor, criteria, depth, false, context, work));
     return true;
   }
