@@ -86,7 +86,8 @@ struct LinkFace {
 // The tetrahedron (p, face): as min_dihedral_sine and measure_tet (without the centre), up to
 // rounding, in one go. The measures are left out where the sine is not above `least`.
 struct LinkTet {
-  double sine = -1;
+  double sine =
+      -1;  // where it is not above `least`: no more than that, -1 for a negative `least` alone
   TetMeasures measures;
 
   LinkTet(Point3 p, const LinkFace& f, double least) {
@@ -95,9 +96,19 @@ struct LinkTet {
     const double det = dot(u, vw);
     const double uu = dot(u, u), vv = dot(v, v), ww = dot(w, w);
     const double s1 = dot(vw, vw), s2 = dot(wu, wu), s3 = dot(uv, uv);
+    const double s23 = s2 * s3, s13 = s1 * s3, s12 = s1 * s2;
+    const double s03 = f.normal2 * s3, s01 = f.normal2 * s1, s02 = f.normal2 * s2;
+    // Most places that are tried are refused: without the divisions.
+    if (least >= 0) {
+      const double det2 = det * det, least2 = kSurely * (least * least);
+      if (det <= 0 || det2 * uu < least2 * s23 || det2 * vv < least2 * s13 ||
+          det2 * ww < least2 * s12 || det2 * f.ab2 < least2 * s03 || det2 * f.bc2 < least2 * s01 ||
+          det2 * f.ca2 < least2 * s02) {
+        return;
+      }
+    }
     const double worst2 =
-        std::min({uu / (s2 * s3), vv / (s1 * s3), ww / (s1 * s2), f.ab2 / (f.normal2 * s3),
-                  f.bc2 / (f.normal2 * s1), f.ca2 / (f.normal2 * s2)});
+        std::min({uu / s23, vv / s13, ww / s12, f.ab2 / s03, f.bc2 / s01, f.ca2 / s02});
     sine = det * std::sqrt(worst2);
     if (!std::isfinite(sine)) sine = -1;
     if (!(sine > least)) return;
@@ -109,6 +120,11 @@ struct LinkTet {
     measures.radius2 =
         det != 0 ? 0.25 * dot(r, r) / (det * det) : std::numeric_limits<double>::infinity();
   }
+
+ private:
+  // Of a squared sine: what is below this share of a limit is so whatever the rounding, which is some
+  // 1e-15 of either side.
+  static constexpr double kSurely = 1 - 1e-12;
 };
 
 // Circumcentre of a triangle in space; far away for a degenerate one.

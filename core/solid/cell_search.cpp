@@ -131,7 +131,10 @@ void CellSearch::keep_if_better(RefinedSolid mesh) {
 
 Result<void> CellSearch::mesh_another_start() {
   RoundLimits rounds = tuning_.rounds;
-  if (source_.may_change_surface() && tuning_.starts.meshes_again > 0) rounds.most_growths = 0;
+  if (source_.may_change_surface() && tuning_.starts.meshes_again > 0) {
+    rounds.most_growths = 0;
+    rounds.most_followed = tuning_.starts.mendable_again;
+  }
   auto mesh = mesh_start(starts_, rounds);
   if (!mesh) return error_of(mesh);
   if (*mesh) keep_if_better(std::move(**mesh));

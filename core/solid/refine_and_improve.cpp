@@ -114,9 +114,49 @@ Result<void> refine(Editor& editor,
   return done;
 }
 
+bool has_too_large(const Editor& editor, const Criteria& criteria) {
+  const QuotientTetrahedralization& mesh = editor.mesh();
+  for (TetId t = 0; t < mesh.tet_slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    if (criteria.size_excess2(editor.measures(t), mesh.tet(t).region) > 1) return true;
+  }
+  return false;
+}
+
+// Refines for the sake of `bad` bad tetrahedra. False where points caused others in a cascade: then the mesh
+// is as it was.
+Result<bool> refine_unless_cascading(std::optional<Editor>& editor,
+                                     QuotientTetrahedralization& mesh,
+                                     const Criteria& criteria,
+                                     int depth,
+                                     std::size_t bad,
+                                     ExecutionContext& context,
+                                     Work& work) {
+  const RoundLimits& limits = work.limits;
+  // What is too large must not stay. Where facets are kept as given, no other mesh has a better boundary:
+  // at large folds of a ring what looked like a cascade was made up for.
+  if (limits.most_followed == 0 || !limits.is_many_bad(bad, mesh.tet_count()) ||
+      has_too_large(*editor, criteria)) {
+    SYMCELL_TRY(refine(*editor, criteria, depth, false, context, work));
+    return true;
+  }
+  const double most = work.runs < limits.most_hidden.size() ? limits.cascade : limits.late_cascade;
+  const QuotientTetrahedralization before = mesh;
+  const Work work_before = work;
+  SYMCELL_TRY(refine(*editor, criteria, depth, false, context, work));
+  if (static_cast<double>(count_bad(*editor, criteria)) <= most * static_cast<double>(bad)) {
+    return true;
+  }
+  mesh = before;
+  work = work_before;
+  editor.emplace(mesh);
+  return false;
+}
+
 // Full rounds of improvement, each followed by refinement of what it left over the bounds; then, as
 // long as something is bad, it is refined, ever deeper, and mended: alone where it is little.
-Result<void> improve(Editor& editor,
+Result<void> improve(std::optional<Editor>& working,
+                     QuotientTetrahedralization& mesh,
                      const Criteria& criteria,
                      const MeshOptions& options,
                      ExecutionContext& context,
@@ -124,20 +164,20 @@ Result<void> improve(Editor& editor,
   const double goal_deg = std::max(work.limits.goal_deg, options.min_dihedral_deg);
   const double goal = std::sin(goal_deg * std::numbers::pi / 180);
   bool full = true;
-  std::size_t bad_before = editor.mesh().tet_count();
+  std::size_t bad_before = mesh.tet_count();
   for (std::size_t round = 0; round < std::size(kDepths); ++round) {
-    context.report(Phase::kImprove, 0.6 + 0.05 * static_cast<double>(round),
-                   editor.mesh().tet_count());
+    context.report(Phase::kImprove, 0.6 + 0.05 * static_cast<double>(round), mesh.tet_count());
+    Editor& editor = *working;
     if (full) editor.compact();
     Surgery surgery(editor, criteria);
     Improver improver(surgery, criteria, context);
     SYMCELL_TRY(full ? improver.round(goal) : improver.mend(goal));
-    const std::size_t count = editor.mesh().tet_count();
+    const std::size_t count = mesh.tet_count();
     const std::size_t rounds =
         count > work.limits.large_cell ? work.limits.rounds_if_large : work.limits.rounds;
     bool last = false;
+    const std::size_t bad = count_bad(editor, criteria);
     if (round + 1 >= rounds) {
-      const std::size_t bad = count_bad(editor, criteria);
       if (bad == 0) break;
       last =
           work.runs > work.limits.most_hidden.size() &&
@@ -148,13 +188,19 @@ Result<void> improve(Editor& editor,
     }
     // What is too large must not stay, whatever else does.
     const int depth = last ? kDepths[0] : kDepths[round];
-    SYMCELL_TRY(refine(editor, criteria, depth, false, context, work));
-    if (last) break;
+    auto done = refine_unless_cascading(working, mesh, criteria, depth, bad, context, work);
+    if (!done) return error_of(done);
+    if (last || !*done) break;
   }
   if (options.delaunay) return {};  // flips undo what comes now
-  Surgery surgery(editor, criteria);
+  Surgery surgery(*working, criteria);
   surgery.keep_size();
   Improver improver(surgery, criteria, context);
+  const std::size_t left = count_bad(*working, criteria);
+  const double share = static_cast<double>(left) / static_cast<double>(mesh.tet_count());
+  if (mesh.tet_count() <= work.limits.most_followed && share > work.limits.lost_share) {
+    return improver.mend(goal);
+  }
   const double costly_deg = std::max(work.limits.costly_goal_deg, options.min_dihedral_deg);
   const double costly_goal = std::sin(costly_deg * std::numbers::pi / 180);
   improver.allow_detours(costly_goal);
@@ -182,7 +228,7 @@ Result<void> grow_while_it_helps(std::optional<Editor>& editor,
     auto done = refine(*editor, criteria, kDepths[0], false, context, work);
     // Where refinement alone makes more of them, improvement does not make up for it.
     const bool hopeful = done && count_bad(*editor, criteria) <= bad;
-    if (hopeful) done = improve(*editor, criteria, options, context, work);
+    if (hopeful) done = improve(editor, mesh, criteria, options, context, work);
     if (!done && done.error().code != ErrorCode::kElementLimit) return done;
     const std::size_t left = done && hopeful ? count_bad(*editor, criteria) : bad;
     if (static_cast<double>(left) > work.limits.least_decline * static_cast<double>(bad)) {
@@ -309,7 +355,7 @@ Result<RefinedSolid> refine_and_improve(InitialTetrahedralization solid,
   work.least_distance = work.limits.least_distance * shortest_edge(*working);
   if (!options.plain) {
     auto ok = refine(*working, criteria, kDepths[0], false, context, work);
-    if (ok) ok = improve(*working, criteria, options, context, work);
+    if (ok) ok = improve(working, mesh, criteria, options, context, work);
     if (ok) ok = grow_while_it_helps(working, mesh, criteria, options, context, work);
     if (!ok) return error_of(ok);
   }

@@ -23,10 +23,12 @@ constexpr std::size_t kMaxSeeds = 64;
 constexpr double kInSphereShare = 1e-10;
 
 bool is_flat(Point3 p, Point3 a, Point3 b, Point3 c, double relative) {
+  const double volume6 = six_volumes(p, a, b, c);
+  if (volume6 <= 0) return true;
   const double l2 =
       std::max({squared_distance(p, a), squared_distance(p, b), squared_distance(p, c),
                 squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)});
-  return six_volumes(p, a, b, c) <= relative * l2 * std::sqrt(l2);
+  return volume6 <= relative * l2 * std::sqrt(l2);
 }
 
 // Whether p and `inner` are on one side of the line through a and b; all four lie in one plane but
@@ -194,7 +196,17 @@ bool Editor::in_own_plane(const Cavity& cavity, const CavityFace& face) const {
   return height * height <= kCoplanarRelativeHeight * kCoplanarRelativeHeight * reach2 * dot(n, n);
 }
 
-void Editor::grow_cavity(Cavity& cavity) {
+bool Editor::turns_away(const Cavity& cavity, TetCopy c, std::uint32_t i) const {
+  const auto& f = kFaceCorners[i];
+  return is_flat(cavity.point, mesh_.lift(mesh_.corner(c, f[0])), mesh_.lift(mesh_.corner(c, f[1])),
+                 mesh_.lift(mesh_.corner(c, f[2])), kMinRelativeVolume);
+}
+
+bool Editor::grow_cavity(Cavity& cavity, std::size_t most_hidden) {
+  // Of a point on a facet or edge some that see it not may yet be divided with their facet, and where a
+  // seed is hidden nothing but seeds will be left.
+  bool counts = most_hidden != kAny && cavity.where.kind == Location::Kind::kInside;
+  std::size_t hidden = 0;
   epoch_ = mesh_.new_epoch();
   for (std::size_t i = 0; i < cavity.tets.size(); ++i) {
     Tet& t = mesh_.tet(cavity.tets[i].t);
@@ -203,20 +215,35 @@ void Editor::grow_cavity(Cavity& cavity) {
   }
   for (std::size_t at = 0; at < cavity.tets.size() && cavity.tets.size() < kMaxCavity; ++at) {
     const TetCopy c = cavity.tets[at];
+    bool is_hidden = false;
     for (std::uint32_t i = 0; i < 4; ++i) {
       const Tet& t = mesh_.tet(c.t);
-      if (t.nb[i] == kNoHalfFace) continue;
+      if (t.nb[i] == kNoHalfFace) {
+        is_hidden = is_hidden || (counts && turns_away(cavity, c, i));
+        continue;
+      }
       Tet& g = mesh_.tet(tet_of(t.nb[i]));
       if (g.stamp == epoch_) continue;
       const TetCopy n = mesh_.neighbour(c, i);
-      const bool joins = t.facet[i] == kNoFacet ? in_sphere(n, cavity.point)
-                                                : in_own_plane(cavity, face_of_copy(c, i));
-      if (!joins) continue;
+      const bool joins = t.facet[i] == kNoFacet
+                             ? in_sphere(n, cavity.point)
+                             : !own_facets_.empty() && in_own_plane(cavity, face_of_copy(c, i));
+      if (!joins) {
+        is_hidden = is_hidden || (counts && turns_away(cavity, c, i));
+        continue;
+      }
       g.stamp = epoch_;
       g.scratch = static_cast<std::int32_t>(cavity.tets.size());
       cavity.tets.push_back(n);
     }
+    if (!is_hidden) continue;
+    if (at < cavity.seeds) {
+      counts = false;
+    } else if (++hidden > most_hidden) {
+      return false;
+    }
   }
+  return true;
 }
 
 std::int64_t Editor::gather_boundary(Cavity& cavity) {
@@ -419,7 +446,7 @@ bool Editor::find_cavity(Point3 p, const Location& where, Cavity& cavity, std::s
                    mesh_.on_axis(where.edge[1].orbit);
   seed_cavity(cavity);
   find_own_facets(cavity);
-  grow_cavity(cavity);
+  if (!grow_cavity(cavity, most_hidden)) return false;
   std::size_t hidden = 0;
   while (true) {
     flat_face_ = 4;

@@ -143,7 +143,11 @@ class Editor {
   [[nodiscard]] bool in_sphere(TetCopy c, Point3 p) const;
   void seed_cavity(Cavity& cavity) const;
   void find_own_facets(const Cavity& cavity);
-  void grow_cavity(Cavity& cavity);
+  // False as soon as more than `most_hidden` tetrahedra are known to have a face that the point, inside
+  // the first one, does not see.
+  [[nodiscard]] bool grow_cavity(Cavity& cavity, std::size_t most_hidden);
+  // Whether the cavity's point does not see face i of c, a face of its boundary.
+  [[nodiscard]] bool turns_away(const Cavity& cavity, TetCopy c, std::uint32_t i) const;
   // Fills faces and outline; kFits, or the index of a tetrahedron that must leave, with all of its
   // kind in hidden_.
   static constexpr std::int64_t kFits = -1;

@@ -156,7 +156,7 @@ bool Refiner::allowed(const Cavity& cavity, const Cause& cause, double share) co
   const double nearest = nearest_to(cavity);
   if (nearest < criteria_.min_edge()) return false;
   if (cause.size) return nearest >= cause.least;
-  if (shape_budget_ == 0 || mesh_.tet_count() > most_shaped_) return false;
+  if (!may_add_for_shape()) return false;
   if (nearest < std::max(least_distance_, share * cause.shortest)) return false;
   return nearest >= cause.shortest || (cause.depth < max_depth_ && !cause.spare);
 }
@@ -187,8 +187,14 @@ void Refiner::account(const Cause& cause) {
   }
 }
 
+bool Refiner::may_add_for_shape() const {
+  return shape_budget_ > 0 && mesh_.tet_count() <= most_shaped_;
+}
+
 Refiner::Outcome Refiner::treat(TetId t) {
   const Cause cause = cause_of(t);
+  // No point would be allowed, wherever it came to lie: it need not be looked for.
+  if (!cause.size && !may_add_for_shape()) return Outcome::kRefused;
   const Point3 p = editor_.measures(t).centre;
   const auto walk = editor_.walk({t, 0}, p);
   if (walk.lost) return Outcome::kRefused;

@@ -116,6 +116,8 @@ class Refiner {
   // From the point to the nearest vertex, its own copies included.
   [[nodiscard]] double nearest_to(const Cavity& cavity) const;
   [[nodiscard]] bool allowed(const Cavity& cavity, const Cause& cause, double share) const;
+  // Whether this run's budget and the mesh's size leave room for a point for the sake of shape.
+  [[nodiscard]] bool may_add_for_shape() const;
   [[nodiscard]] Outcome insert(
       const Cavity& cavity, VertexKind kind, std::int32_t parent, bool on_axis, const Cause& cause);
   // Counts the point against the budget or, where size asks for it, towards it.

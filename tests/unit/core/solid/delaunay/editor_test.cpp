@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "core/base/random.hpp"
 #include "tests/unit/core/solid/solid_checks.hpp"
 
 namespace symcell::solid {
@@ -77,6 +78,38 @@ TEST_P(SolidEditorFold, InsertsInside) {
   }
   EXPECT_EQ(done, tried);
   EXPECT_EQ(editor_.counters().insertions, static_cast<std::uint64_t>(done));
+}
+
+// A limit on what is hidden refuses a point or leaves its cavity as it is without one.
+TEST_P(SolidEditorFold, HiddenTetrahedraAreCountedWhileTheCavityGrows) {
+  Random random(7);
+  int found = 0, refused = 0;
+  for (const TetId t : tets()) {
+    std::array<double, 4> share{};
+    double sum = 0;
+    for (double& s : share) sum += s = 1e-3 + random.uniform();
+    const auto x = editor_.points({t, 0});
+    Point3 p;
+    for (std::size_t i = 0; i < 4; ++i) p = p + (share[i] / sum) * x[i];
+    const Location where{Kind::kInside, {t, 0}, 0, {}};
+    Cavity any;
+    ASSERT_TRUE(editor_.find_cavity(p, where, any));
+    std::size_t smallest = 0;
+    for (const std::size_t most : {0, 1, 4, 1000}) {
+      Cavity limited;
+      if (!editor_.find_cavity(p, where, limited, most)) {
+        EXPECT_EQ(smallest, 0U) << "a larger limit refuses what a smaller one lets pass";
+        ++refused;
+        continue;
+      }
+      ++found;
+      smallest = limited.tets.size();
+      EXPECT_EQ(limited.tets, any.tets);
+      EXPECT_EQ(limited.nearest2, any.nearest2);
+    }
+  }
+  EXPECT_GT(found, 0);
+  RecordProperty("refused", refused);
 }
 
 // In a frame that is not the stored one.
