@@ -83,7 +83,7 @@ struct RoundLimits {
   double least_progress = 0.9;
   // Where many are bad, a run that leaves more of them than it found by a factor is undone and the last:
   // points cause others in a cascade, and improvement does not make up for it. Before any number may be
-  // hidden, factors up to 7 were made up for on real parts (a fan, a knob), 9.2 was not (a track link with
+  // hidden, factors up to 7 were made up for on real parts (a fan, a knob), 9.2 was not (a gear with
   // 6,302 of 114,000 went on to 300,000 of 614,000); later ones up to 3.3, and from 6.4 on not.
   double cascade = 8;
   double late_cascade = 4;
