@@ -15,6 +15,7 @@
 #include "core/model/describe.hpp"
 #include "server/cli/atomic_output.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/distinct_files.hpp"
 #include "server/cli/model_input.hpp"
 #include "server/cli/option_flags.hpp"
 #include "server/cli/report_error.hpp"
@@ -130,6 +131,9 @@ Result<void> run(const TransferArguments& arguments) {
     if (arguments.full.empty()) {
       return fail(ErrorCode::kBadOption, "give --full FILE.vtu for the result, or --list");
     }
+    SYMCELL_TRY(check_distinct(
+        {{"the results that are read", arguments.results}, {"--cell", arguments.cell}},
+        {{"--full", arguments.full}}));
     Result<AtomicOutput> opened = AtomicOutput::open(arguments.full);
     if (!opened) return error_of(opened);
     file.emplace(std::move(*opened));
