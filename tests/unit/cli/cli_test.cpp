@@ -461,6 +461,28 @@ TEST_F(Cli, NoOutputTakesThePlaceOfAModelOrOfAnotherOutput) {
   EXPECT_EQ(symcell(mesh + "--format vtu --cell /dev/null --full /dev/null").exit_code, 0);
 }
 
+TEST_F(Cli, WordsOfErrorsLeadOn) {
+  const auto says = [&](const std::string& arguments, const std::string& words) {
+    const Outcome outcome = symcell(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+  };
+  says("mesh " + ring_ + " --min-angel 3", "did you mean --min-angle?");
+  says("mesh " + ring_ + " --min-angel=3", "did you mean --min-angle?");
+  says("mesh " + ring_ + " --center 1e300,0", "1e60");
+  says("mesh " + ring_ + " --time-limit 1e308", "1e9");
+  ASSERT_EQ(symcell("mesh " + ring_ + " --cell " + file("c.vtu")).exit_code, 0);
+  const std::string cell = file("c.vtu");
+  says("transfer " + cell + " --cell " + cell + " --full " + file("f.vtu"), "--array");
+}
+
+TEST_F(Cli, ACellMayBeginWithAByteOrderMark) {
+  ASSERT_EQ(symcell("mesh " + ring_ + " --cell " + file("c.json")).exit_code, 0);
+  const std::string marked = "printf '\\357\\273\\277' | cat - " + file("c.json") + " | ";
+  const Outcome converted = symcell("convert - --full " + file("f.vtu"), marked);
+  EXPECT_EQ(converted.exit_code, 0) << converted.err;
+}
+
 TEST_F(Cli, ABatchWritesOverNoModel) {
   namespace fs = std::filesystem;
   const std::string parts = file("parts");
