@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "api/formats/byte_order_mark.hpp"
 #include "api/formats/cell_archive.hpp"
 #include "api/formats/gzip.hpp"
 #include "api/formats/vtu_reader.hpp"
@@ -368,8 +369,9 @@ Result<SymmetryCellMesh> read_cell(std::string_view bytes) {
     if (!is_gzip(*text)) return read_cell(*text);
   }
   if (bytes.starts_with(kArchive)) return read_cell_archive(bytes);
-  const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
-  const char first = begin == std::string_view::npos ? ' ' : bytes[begin];
+  const std::string_view text = without_byte_order_mark(bytes);
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  const char first = begin == std::string_view::npos ? ' ' : text[begin];
   const bool json = first == '{';
   if (!json && first != '<') {
     return fail(ErrorCode::kSyntax,

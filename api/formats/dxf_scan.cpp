@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "api/formats/byte_order_mark.hpp"
 #include "api/formats/text_numbers.hpp"
 #include "api/printable.hpp"
 #include "core/model/describe.hpp"
@@ -308,7 +309,7 @@ class Scanner {
 
 bool looks_like_dxf(std::string_view bytes) {
   if (bytes.starts_with(kBinary)) return true;
-  if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+  bytes = without_byte_order_mark(bytes);
   // Comments may stand first; then come a 0 and the first section.
   for (int i = 0; i < 64; ++i) {
     const std::size_t first = bytes.find('\n');
@@ -328,7 +329,7 @@ Result<DxfScan> scan_dxf(std::string_view bytes) {
     return fail(ErrorCode::kUnsupportedModel,
                 "this is a binary DXF file; save it as an ASCII DXF from the CAD program");
   }
-  if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+  bytes = without_byte_order_mark(bytes);
   return Scanner(bytes).run();
 }
 

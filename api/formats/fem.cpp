@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "api/formats/byte_order_mark.hpp"
 #include "api/formats/text_numbers.hpp"
 #include "api/printable.hpp"
 #include "core/geometry/arc.hpp"
@@ -266,7 +267,7 @@ class FemReader {
 }  // namespace
 
 bool looks_like_fem(std::string_view bytes) {
-  if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+  bytes = without_byte_order_mark(bytes);
   const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
   if (begin == std::string_view::npos) return false;
   return lower(bytes.substr(begin, 8)) == "[format]";

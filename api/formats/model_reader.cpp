@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "api/formats/byte_order_mark.hpp"
 #include "api/formats/cad.hpp"
 #include "api/formats/dxf.hpp"
 #include "api/formats/dxf_scan.hpp"
@@ -35,7 +36,7 @@ std::string lower(std::string_view text) {
 }
 
 std::string_view without_leading_blank(std::string_view bytes) {
-  if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+  bytes = without_byte_order_mark(bytes);
   const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
   return begin == std::string_view::npos ? std::string_view() : bytes.substr(begin);
 }

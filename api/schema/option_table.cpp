@@ -25,10 +25,15 @@ Failure refuse(ErrorCode code,
                const OptionInfo& info,
                const OptionValue& value,
                const std::string& wanted) {
-  const std::string shown = printable(value.text);
+  std::string shown = printable(value.text);
+  if (value.kind == Kind::kText && !value.from_text) {
+    // "true" is not true.
+    shown = '"' + shown + '"';
+  } else if (shown.empty()) {
+    shown = "nothing";
+  }
   std::string name(info.name);
-  return fail(code, name + " must be " + wanted + "; got " + (shown.empty() ? "nothing" : shown),
-              {}, "/options/" + name);
+  return fail(code, name + " must be " + wanted + "; got " + shown, {}, "/options/" + name);
 }
 
 // A finite or infinite number; a text must be one as a whole.
@@ -103,8 +108,8 @@ Result<double> in_range(const OptionInfo& info,
 }
 
 Result<void> set_bound(const OptionInfo& info, const OptionValue& value, double& bound) {
-  const Result<double> number =
-      in_range(info, value, 0, false, 1e300, "a positive number; leave it out for no bound");
+  const Result<double> number = in_range(
+      info, value, 0, false, 1e300, "a positive number, at most 1e300; leave it out for no bound");
   if (!number) return error_of(number);
   bound = *number;
   return {};
@@ -135,7 +140,7 @@ Result<void> set_center(const OptionInfo& info, const OptionValue& value, MeshOp
   const bool planar =
       numbers && (numbers->size() == 2 || (numbers->size() == 3 && (*numbers)[2] == 0));
   if (!planar || !all_in_range(*numbers)) {
-    return refuse(ErrorCode::kBadAxis, info, value, "two finite coordinates x,y of the plane");
+    return refuse(ErrorCode::kBadAxis, info, value, "two coordinates x,y of the plane, up to 1e60");
   }
   const Point2 center{(*numbers)[0], (*numbers)[1]};
   if (options.center && *options.center != center) {
@@ -154,7 +159,7 @@ Result<void> set_axis_origin(const OptionInfo& info,
   if (numbers && numbers->size() == 2) return set_center(info, value, options);
   if (!numbers || numbers->size() != 3 || !all_in_range(*numbers)) {
     return refuse(ErrorCode::kBadAxis, info, value,
-                  "finite coordinates: x,y,z of a point of the axis");
+                  "three coordinates x,y,z of a point of the axis, up to 1e60");
   }
   options.axis_origin = Point3{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
   return {};
@@ -169,7 +174,7 @@ Result<void> set_axis_direction(const OptionInfo& info,
       std::ranges::any_of(*numbers, [](double c) { return std::abs(c) >= 1 / kMostCoordinate; });
   if (!some) {
     return refuse(ErrorCode::kBadAxis, info, value,
-                  "a vector x,y,z of three finite numbers that are not all 0");
+                  "a vector x,y,z of three numbers up to 1e60 that are not all 0");
   }
   options.axis_direction = Point3{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
   return {};
@@ -284,8 +289,9 @@ Result<void> set_max_elements(const OptionInfo& info,
 Result<void> set_time_limit(const OptionInfo& info,
                             const OptionValue& value,
                             MeshOptions& options) {
-  const Result<double> number = in_range(info, value, 0, false, 1e9,
-                                         "a positive number of seconds; leave it out for no limit");
+  const Result<double> number =
+      in_range(info, value, 0, false, 1e9,
+               "a positive number of seconds, at most 1e9; leave it out for no limit");
   if (!number) return error_of(number);
   options.time_limit_s = *number;
   return {};

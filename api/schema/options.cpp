@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "api/nearest_name.hpp"
 #include "api/printable.hpp"
 #include "api/schema/option_table.hpp"
 
@@ -20,33 +21,11 @@ const OptionRow* find_row(std::string_view name) {
   return row == rows.end() ? nullptr : &*row;
 }
 
-// Levenshtein distance, for "did you mean"; both texts are short.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0u : 1u)});
-      diagonal = above;
-    }
-  }
-  return row[b.size()];
-}
-
 Failure unknown_option(const std::string& name) {
   const std::string shown = printable(name);
-  std::string_view best;
-  std::size_t best_distance = 4;
-  for (const OptionRow& row : internal::option_rows()) {
-    const std::size_t distance = edit_distance(shown, row.info.name);
-    if (distance < best_distance) {
-      best = row.info.name;
-      best_distance = distance;
-    }
-  }
+  std::vector<std::string_view> names;
+  for (const OptionRow& row : internal::option_rows()) names.push_back(row.info.name);
+  const std::string_view best = nearest_name(shown, names);
   std::string message = "there is no option \"" + shown + "\"";
   if (!best.empty()) message += "; did you mean \"" + std::string(best) + "\"?";
   // Escaped as RFC 6901 asks.

@@ -25,6 +25,7 @@
 #include "api/problem.hpp"
 #include "server/cli/atomic_output.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/distinct_files.hpp"
 #include "server/cli/mesh_report.hpp"
 #include "server/cli/option_flags.hpp"
 #include "server/cli/report_error.hpp"
@@ -109,6 +110,7 @@ class Batch {
   Result<bool> run() {
     SYMCELL_TRY(arguments_.flags.options());
     SYMCELL_TRY(find_models());
+    SYMCELL_TRY(check_files());
     std::error_code error;
     fs::create_directories(arguments_.out, error);
     if (error) {
@@ -173,6 +175,23 @@ class Batch {
       if (use > 1) t.name += "-" + std::to_string(use);
     }
     return {};
+  }
+
+  // Models may be links to what lies in OUT, and a summary may be named like a model.
+  [[nodiscard]] Result<void> check_files() const {
+    std::vector<NamedFile> models;
+    std::vector<NamedFile> outputs;
+    for (const Task& t : tasks_) {
+      models.push_back({"the model " + t.report.model, t.model.string()});
+      std::vector<std::string> endings{"." + arguments_.format, ".report.json"};
+      if (arguments_.full) endings.push_back(".full." + arguments_.format);
+      for (const std::string& ending : endings) {
+        outputs.push_back({"an output of " + t.report.model, output(t, ending)});
+      }
+    }
+    outputs.push_back({"--summary", arguments_.summary});
+    outputs.push_back({"--junit", arguments_.junit});
+    return check_distinct(models, outputs);
   }
 
   [[nodiscard]] std::string output(const Task& task, const std::string& ending) const {

@@ -8,6 +8,7 @@
 #include "api/formats/mesh_writer.hpp"
 #include "core/base/execution_context.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/distinct_files.hpp"
 #include "server/cli/mesh_outputs.hpp"
 #include "server/cli/model_input.hpp"
 #include "server/cli/option_flags.hpp"
@@ -62,6 +63,9 @@ Result<void> convert(const ConvertArguments& arguments) {
   }
   const Result<std::uint64_t> memory_bytes = memory_limit_bytes(arguments.memory_limit);
   if (!memory_bytes) return error_of(memory_bytes);
+  SYMCELL_TRY(
+      check_distinct({{"the cell that is read", arguments.input}},
+                     {{"--cell", arguments.meshes.cell}, {"--full", arguments.meshes.full}}));
   Result<std::vector<MeshOutput>> outputs = open_outputs(arguments.meshes);
   if (!outputs) return error_of(outputs);
   const auto written = run_supervised(

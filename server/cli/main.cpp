@@ -4,8 +4,11 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "api/formats/cad.hpp"
+#include "api/nearest_name.hpp"
 #include "api/version.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/keys_command.hpp"
@@ -19,6 +22,23 @@ constexpr int kWrongUsage = 2;
 
 bool has_command(CLI::App& app, const std::string& name) {
   return !app.get_subcommands([&](const CLI::App* c) { return c->get_name() == name; }).empty();
+}
+
+// "; did you mean ...?" for the first flag that the command does not know; else empty.
+std::string suggestion(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands()) {
+    std::vector<std::string_view> names;
+    for (const CLI::Option* option : command->get_options()) {
+      for (const std::string& name : option->get_lnames()) names.emplace_back(name);
+    }
+    for (const std::string& word : command->remaining()) {
+      if (!word.starts_with("--")) continue;
+      const std::string given = word.substr(2, word.find('=') - 2);
+      const std::string_view best = symcell::nearest_name(given, names);
+      return best.empty() ? "" : "; did you mean --" + std::string(best) + "?";
+    }
+  }
+  return {};
 }
 
 std::string version_text() {
@@ -55,7 +75,8 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    std::fprintf(stderr, "symcell: %s; see symcell --help\n", error.what());
+    std::fprintf(stderr, "symcell: %s%s; see symcell --help\n", error.what(),
+                 suggestion(app).c_str());
     return kWrongUsage;
   }
   return exit_code;

@@ -1,7 +1,6 @@
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -17,6 +16,7 @@
 #include "server/base/identifiers.hpp"
 #include "server/cli/atomic_output.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/distinct_files.hpp"
 #include "server/cli/mesh_outputs.hpp"
 #include "server/cli/mesh_report.hpp"
 #include "server/cli/model_input.hpp"
@@ -163,11 +163,12 @@ class MeshRun {
     const Result<MeshOptions> options = arguments_.flags.options();
     if (!options) return error_of(options);
     options_ = *options;
-    const std::array paths{arguments_.meshes.cell, arguments_.meshes.full, arguments_.stats,
-                           arguments_.report, arguments_.junit};
-    if (std::ranges::count(paths, std::string("-")) > 1) {
-      return fail(ErrorCode::kBadOption, "only one output can go to standard output");
-    }
+    SYMCELL_TRY(
+        check_distinct({{"the model", arguments_.model}}, {{"--cell", arguments_.meshes.cell},
+                                                           {"--full", arguments_.meshes.full},
+                                                           {"--stats", arguments_.stats},
+                                                           {"--report", arguments_.report},
+                                                           {"--junit", arguments_.junit}}));
     Result<std::vector<MeshOutput>> meshes = open_outputs(arguments_.meshes);
     if (!meshes) return error_of(meshes);
     meshes_ = std::move(*meshes);

@@ -9,12 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "api/formats/byte_order_mark.hpp"
 #include "api/formats/mesh_writer.hpp"
 #include "api/formats/nodal_results.hpp"
 #include "core/base/execution_context.hpp"
 #include "core/model/describe.hpp"
 #include "server/cli/atomic_output.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/distinct_files.hpp"
 #include "server/cli/model_input.hpp"
 #include "server/cli/option_flags.hpp"
 #include "server/cli/report_error.hpp"
@@ -55,10 +57,21 @@ struct TransferArguments {
   bool json_errors = false;
 };
 
+bool is_xml(std::string_view bytes) {
+  const std::string_view text = without_byte_order_mark(bytes);
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  return begin != std::string_view::npos && text[begin] == '<';
+}
+
 Result<std::vector<NodalResult>> read_results(const TransferArguments& arguments,
                                               std::size_t nodes) {
   const Result<std::string> bytes = read_mesh_input(arguments.results);
   if (!bytes) return error_of(bytes);
+  if (arguments.array.empty() && is_xml(*bytes)) {
+    return fail(ErrorCode::kBadOption,
+                "this is no .frd; if it is a VTU, name its point array with the vectors by --array "
+                "NAME, and that with their imaginary parts by --imaginary NAME");
+  }
   if (arguments.array.empty()) return read_frd(*bytes, nodes);
   auto one = read_vtu_result(*bytes, nodes, arguments.array, arguments.imaginary);
   if (!one) return error_of(one);
@@ -130,6 +143,9 @@ Result<void> run(const TransferArguments& arguments) {
     if (arguments.full.empty()) {
       return fail(ErrorCode::kBadOption, "give --full FILE.vtu for the result, or --list");
     }
+    SYMCELL_TRY(check_distinct(
+        {{"the results that are read", arguments.results}, {"--cell", arguments.cell}},
+        {{"--full", arguments.full}}));
     Result<AtomicOutput> opened = AtomicOutput::open(arguments.full);
     if (!opened) return error_of(opened);
     file.emplace(std::move(*opened));

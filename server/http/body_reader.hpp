@@ -76,6 +76,9 @@ struct ArrivedForm {
                                                         const std::filesystem::path& destination,
                                                         std::size_t max_bytes);
 
+// For calls that take no body. False: there is one, the call is answered.
+[[nodiscard]] bool receive_nothing(Call& call);
+
 // A multipart/form-data body with a file `model` and a text `options`.
 [[nodiscard]] std::optional<ArrivedForm> receive_form(Call& call,
                                                       const std::filesystem::path& destination,

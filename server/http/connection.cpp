@@ -53,7 +53,14 @@ ConnectionStream::ConnectionStream(Connection& connection,
     begin_ += 2;
     head_left_ -= 2;
   }
-  if (connection.head.head().chunked) guard_.emplace();
+  const RequestHead& head = connection.head.head();
+  std::size_t erased = 0;
+  for (const auto& [at, length] : head.range_lines) {
+    buffer_.erase(at - erased, length);
+    erased += length;
+  }
+  head_left_ -= erased;
+  if (head.chunked) guard_.emplace();
 }
 
 ConnectionStream::~ConnectionStream() {
@@ -122,9 +129,32 @@ bool ConnectionStream::receive_more() {
   }
 }
 
+bool ConnectionStream::skip_trailer() {
+  while (guard_->in_trailer()) {
+    if (begin_ == buffer_.size() && !receive_more()) return false;
+    if (!guard_->pass({buffer_.data() + begin_, 1})) return false;
+    ++begin_;
+  }
+  return true;
+}
+
 ssize_t ConnectionStream::read(char* ptr, size_t size) {
+  if (head_left_ == 0 && guard_ && guard_->in_trailer()) {
+    if (!skip_trailer()) return -1;
+    stand_in_ = "\r\n";
+  }
+  if (!stand_in_.empty()) {
+    const std::size_t n = stand_in_.copy(ptr, size);
+    stand_in_.remove_prefix(n);
+    return static_cast<ssize_t>(n);
+  }
   if (begin_ == buffer_.size() && !receive_more()) return -1;
-  const std::size_t most = head_left_ > 0 ? std::min(size, head_left_) : size;
+  std::size_t most = size;
+  if (head_left_ > 0) {
+    most = std::min(most, head_left_);
+  } else if (guard_) {
+    most = std::min(most, guard_->most());
+  }
   const std::size_t n = std::min(most, buffer_.size() - begin_);
   std::memcpy(ptr, buffer_.data() + begin_, n);
   if (head_left_ > 0) {

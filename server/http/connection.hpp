@@ -63,6 +63,7 @@ class ConnectionStream final : public httplib::Stream {
   [[nodiscard]] std::uint64_t progress(short events) const;
   // False: the end, an error, or no patience left.
   [[nodiscard]] bool receive_more();
+  [[nodiscard]] bool skip_trailer();
 
   Connection& connection_;
   socket_t socket_;
@@ -72,6 +73,7 @@ class ConnectionStream final : public httplib::Stream {
   std::size_t begin_ = 0;
   std::size_t head_left_ = 0;        // of the head, not yet read by httplib
   std::optional<ChunkGuard> guard_;  // of a chunked body
+  std::string_view stand_in_;        // what httplib is shown in the place of a trailer
   std::uint64_t read_ = 0;
   std::uint64_t written_ = 0;
   const bool* silent_ = nullptr;
@@ -98,6 +100,7 @@ struct Exchange {
   std::string job;               // that the request is about, "" if none
   std::string traceparent;       // W3C Trace Context, "" if none came
   std::string route;             // template of the route, "" if none matched
+  std::string range;             // of Range, which httplib is not shown
   std::string accept_encoding;   // moved here so that httplib compresses nothing by itself
   std::string content_encoding;  // likewise for inflating
   int status = 0;

@@ -93,7 +93,8 @@ bool etag_matches(std::string_view if_none_match, std::string_view etag) {
 
 RangeRequest parse_byte_range(std::string_view text, std::uint64_t bytes) {
   constexpr std::string_view kUnit = "bytes=";
-  if (!text.starts_with(kUnit) || text.find(',') != std::string_view::npos) return {};
+  if (lower(text.substr(0, kUnit.size())) != kUnit || text.find(',') != std::string_view::npos)
+    return {};
   text = trim(text.substr(kUnit.size()));
   const std::size_t dash = text.find('-');
   if (dash == std::string_view::npos) return {};

@@ -179,6 +179,14 @@ class HttpServer::Impl final : public httplib::Server {
     Put(everything, with_body);
     Patch(everything, with_body);
     Delete(everything, with_body);
+    // httplib has no place for handlers of these; the router tells which methods an address takes.
+    set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+      if (request.method != "TRACE" && request.method != "CONNECT") {
+        return HandlerResponse::Unhandled;
+      }
+      dispatch(request, response, nullptr);
+      return HandlerResponse::Handled;
+    });
     // Asked before the body is sent: a client that waits for the answer need not send what is refused.
     set_expect_100_continue_handler(
         [this](const httplib::Request& request, httplib::Response& response) {
@@ -327,6 +335,7 @@ class HttpServer::Impl final : public httplib::Server {
     exchange->request_id = make_random_hex();
     exchange->client = connection->client();
     exchange->declared_bytes = connection->head.head().content_length;
+    exchange->range = connection->head.head().range;
     exchange->sent_before = connection->sent();
     const bool last = ++connection->served == kMaxKeepAliveRequests;
     go_on(connection, exchange, answer(*connection, *exchange, last));

@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "api/printable.hpp"
 #include "server/base/clock.hpp"
+#include "server/http/body_reader.hpp"
 #include "server/http/call.hpp"
 #include "server/http/header_values.hpp"
 #include "server/http/job_document.hpp"
@@ -204,6 +206,15 @@ void submit_job(Call& call, ServiceContext& context) {
 void rerun_job(Call& call, ServiceContext& context) {
   const std::string key = call.header("Idempotency-Key");
   if (!is_usable_key(key)) return respond_bad_key(call);
+  // Whoever sends options means another mesh than the one that would be made.
+  if (!call.query.empty()) {
+    respond_problem(call, ServiceProblem::kBadRequest,
+                    "a job is run again with its own options: there is no parameter \"" +
+                        printable(call.query.begin()->first) +
+                        "\" here; for others submit its model to /v1/jobs");
+    return;
+  }
+  if (!receive_nothing(call)) return;
   const auto job = context.jobs.find(call.id);
   if (!job) return respond_unknown_job(call);
   if (context.jobs.stopping()) return respond_stopping(call);

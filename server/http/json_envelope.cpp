@@ -3,6 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "api/formats/byte_order_mark.hpp"
+
 namespace symcell::server {
 namespace {
 
@@ -12,7 +14,8 @@ bool is_space(char c) {
 
 class Scanner {
  public:
-  explicit Scanner(std::string_view text) : text_(text) {}
+  explicit Scanner(std::string_view text)
+      : text_(text), at_(text.size() - without_byte_order_mark(text).size()) {}
 
   [[nodiscard]] std::size_t position() const { return at_; }
   [[nodiscard]] bool at_end() const { return at_ == text_.size(); }
@@ -74,7 +77,7 @@ class Scanner {
 
  private:
   std::string_view text_;
-  std::size_t at_ = 0;
+  std::size_t at_;
 };
 
 Failure syntax_error(std::size_t position, const std::string& expected) {

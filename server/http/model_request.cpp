@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -43,8 +44,14 @@ Result<MeshOptions> parse_options_text(std::string_view text) {
   // Options are small and flat; nothing needs to be deeper than a list of coordinates.
   constexpr int kMaxDepth = 4;
   bool too_deep = false;
-  const auto callback = [&](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
+  std::set<std::string> seen;
+  std::string repeated;  // the first name that comes again; the parser would keep its last value
+  const auto callback = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json& value) {
     too_deep = too_deep || depth > kMaxDepth;
+    if (depth == 1 && event == nlohmann::json::parse_event_t::key) {
+      const auto& name = value.get_ref<const std::string&>();
+      if (!seen.insert(name).second && repeated.empty()) repeated = name;
+    }
     return !too_deep;
   };
   const auto json = nlohmann::json::parse(text, callback, false);
@@ -55,7 +62,13 @@ Result<MeshOptions> parse_options_text(std::string_view text) {
   if (!json.is_object()) {
     return fail(ErrorCode::kWrongType, "the options must be a JSON object", {}, "/options");
   }
-  return options_from_json(json);
+  auto options = options_from_json(json);
+  // Names that there are not have been refused.
+  if (options && !repeated.empty()) {
+    return fail(ErrorCode::kBadOption, repeated + " is given twice; give it once", {},
+                "/options/" + repeated);
+  }
+  return options;
 }
 
 // "options[max_area]", as clients write an object in a query (style deepObject), is max_area.

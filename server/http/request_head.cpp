@@ -1,20 +1,28 @@
 #include "server/http/request_head.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <limits>
 
 namespace symcell::server {
 namespace {
 
 constexpr std::size_t kMaxTargetBytes = 8192;
+constexpr std::size_t kShownMethod = 40;  // bytes of one in messages
 // httplib reads no more of them, and nobody sends a tenth.
 constexpr std::size_t kMaxLines = 500;
 // Of a number of bytes: more than any disk holds.
 constexpr std::size_t kMaxLengthDigits = 15;
-constexpr std::size_t kMaxChunkDigits = 12;       // hexadecimal
-constexpr std::size_t kMaxChunkExtension = 1024;  // of which nobody knows any
+constexpr std::size_t kMaxChunkDigits = 12;            // hexadecimal
+constexpr std::size_t kMaxChunkExtension = 1024;       // of which nobody knows any
+constexpr std::size_t kMaxTrailerBytes = 64UL * 1024;  // as of a head
 constexpr int kBadRequest = 400;
 constexpr int kUriTooLong = 414;
+constexpr int kNotImplemented = 501;
+// Those of RFC 9110 and 5789; the router knows which an address takes.
+constexpr std::array<std::string_view, 9> kMethods{"GET",    "HEAD",    "POST",    "PUT",  "PATCH",
+                                                   "DELETE", "OPTIONS", "CONNECT", "TRACE"};
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
@@ -46,6 +54,27 @@ std::string_view trimmed(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
   return text;
+}
+
+// What is wrong with the line of a field, "" if nothing is.
+std::string_view fault_of_field(std::string_view line) {
+  if (line.front() == ' ' || line.front() == '\t') {
+    return "header fields must not be folded over lines";
+  }
+  const std::size_t colon = line.find(':');
+  if (colon == std::string_view::npos || !is_token(line.substr(0, colon))) {
+    return "a header field is not of the form name: value";
+  }
+  const std::string_view value = trimmed(line.substr(colon + 1));
+  if (std::ranges::any_of(value, [](char c) { return c != '\t' && is_control(c); })) {
+    return "a header field holds a control character";
+  }
+  return {};
+}
+
+// Whoever takes a trailer for a part of the head would read another request.
+bool is_framing(std::string_view name) {
+  return name == "content-length" || name == "transfer-encoding" || name == "host";
 }
 
 // A name, an IPv4 address or an IPv6 one in brackets, and perhaps a port.
@@ -99,6 +128,7 @@ bool HeadReader::add(std::string_view bytes) {
     std::string_view line = bytes.substr(length_, end - length_);
     if (!line.ends_with('\r')) return refuse(kBadRequest, "a line ends without a carriage return");
     line.remove_suffix(1);
+    line_ = length_;
     length_ = end + 1;
     if (take_line(line)) return true;
   }
@@ -131,24 +161,26 @@ bool HeadReader::take_request_line(std::string_view line) {
     return refuse(kBadRequest, "only HTTP/1.1 and HTTP/1.0 are spoken here");
   }
   if (target.size() > kMaxTargetBytes) return refuse(kUriTooLong, "the address is too long");
+  if (std::ranges::find(kMethods, head_.method) == kMethods.end()) {
+    return refuse(kNotImplemented,
+                  "there is no method \"" + head_.method.substr(0, kShownMethod) + "\" here");
+  }
   return false;
 }
 
 bool HeadReader::take_field(std::string_view line) {
-  if (line.front() == ' ' || line.front() == '\t') {
-    return refuse(kBadRequest, "header fields must not be folded over lines");
-  }
+  const std::string_view fault = fault_of_field(line);
+  if (!fault.empty()) return refuse(kBadRequest, std::string(fault));
   const std::size_t colon = line.find(':');
-  if (colon == std::string_view::npos || !is_token(line.substr(0, colon))) {
-    return refuse(kBadRequest, "a header field is not of the form name: value");
-  }
   const std::string_view value = trimmed(line.substr(colon + 1));
-  if (std::ranges::any_of(value, [](char c) { return c != '\t' && is_control(c); })) {
-    return refuse(kBadRequest, "a header field holds a control character");
-  }
   const std::string name = lower(line.substr(0, colon));
   if (name == "host") return take_host(value);
   if (name == "prefer" && lower(value).find("wait") != std::string::npos) head_.prefers_wait = true;
+  if (name == "range") {
+    // Several fields of one name are a list.
+    head_.range.append(head_.range_lines.empty() ? "" : ",").append(value);
+    head_.range_lines.emplace_back(line_, length_ - line_);
+  }
   if (name == "expect") head_.expects_continue = lower(value) == "100-continue";
   return take_framing(name, value);
 }
@@ -217,10 +249,33 @@ bool ChunkGuard::pass_size(char c) {
   return c == ';';
 }
 
+bool ChunkGuard::pass_trailer(char c) {
+  if (++trailer_bytes_ > kMaxTrailerBytes) return false;
+  if (c != '\n') {
+    field_ += c;
+    return true;
+  }
+  if (!field_.ends_with('\r')) return false;
+  field_.pop_back();
+  if (field_.empty()) {
+    state_ = State::kOver;
+    return true;
+  }
+  const bool sound = ++fields_ <= kMaxLines && fault_of_field(field_).empty() &&
+                     !is_framing(lower(std::string_view(field_).substr(0, field_.find(':'))));
+  field_.clear();
+  return sound;
+}
+
+std::size_t ChunkGuard::most() const {
+  if (state_ == State::kOver) return std::numeric_limits<std::size_t>::max();
+  return state_ == State::kData ? static_cast<std::size_t>(left_) : 1;
+}
+
 bool ChunkGuard::pass(std::string_view bytes) {
   while (!bytes.empty()) {
     const char c = bytes.front();
-    if (state_ == State::kLast) return true;
+    if (state_ == State::kOver) return true;
     if (state_ == State::kData) {
       const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(left_, bytes.size()));
       left_ -= n;
@@ -243,7 +298,7 @@ bool ChunkGuard::pass(std::string_view bytes) {
         break;
       case State::kSizeEnd:
         if (c != '\n') return false;
-        state_ = left_ == 0 ? State::kLast : State::kData;
+        state_ = left_ == 0 ? State::kTrailer : State::kData;
         digits_ = 0;
         break;
       case State::kDataReturn:
@@ -254,8 +309,11 @@ bool ChunkGuard::pass(std::string_view bytes) {
         if (c != '\n') return false;
         state_ = State::kSizeStart;
         break;
+      case State::kTrailer:
+        if (!pass_trailer(c)) return false;
+        break;
       case State::kData:
-      case State::kLast: break;
+      case State::kOver: break;
     }
   }
   return true;

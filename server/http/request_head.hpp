@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace symcell::server {
 
@@ -24,6 +26,10 @@ struct RequestHead {
   bool prefers_wait = false;  // Prefer: wait
   std::uint64_t content_length = 0;
   bool has_content_length = false;
+  // Of Range, if it came. httplib refuses units that it does not know, which are to be ignored (RFC 9110,
+  // 14.2), so it is not shown them: `range_lines` are their places, first byte and length.
+  std::string range;
+  std::vector<std::pair<std::size_t, std::size_t>> range_lines;
 };
 
 struct HeadFault {
@@ -55,6 +61,7 @@ class HeadReader {
 
   RequestHead head_;
   HeadFault fault_;
+  std::size_t line_ = 0;     // where the line that is looked at begins
   std::size_t length_ = 0;   // bytes whose lines were taken
   std::size_t scanned_ = 0;  // bytes known to hold no end of the line that begins at length_
   std::size_t lines_ = 0;
@@ -63,11 +70,16 @@ class HeadReader {
 };
 
 // Follows a chunked body on its way to httplib, which takes more for a chunk's length than the
-// grammar does, and would wait for a body of a negative one.
+// grammar does, and would wait for a body of a negative one. httplib knows no trailer fields: whoever reads takes
+// what comes while in_trailer(), and hands on an empty line in its stead.
 class ChunkGuard {
  public:
   // False: this is no chunked body; nothing after it can be understood.
   [[nodiscard]] bool pass(std::string_view bytes);
+  // How many bytes may be passed at once, so that none of the trailer are.
+  [[nodiscard]] std::size_t most() const;
+  // The chunk of no bytes has come, the empty line after it not yet.
+  [[nodiscard]] bool in_trailer() const { return state_ == State::kTrailer; }
 
  private:
   enum class State : std::uint8_t {
@@ -78,15 +90,20 @@ class ChunkGuard {
     kData,
     kDataReturn,
     kDataEnd,
-    kLast,  // the chunk of no bytes has come: the rest is httplib's
+    kTrailer,  // the chunk of no bytes has come
+    kOver,
   };
 
   [[nodiscard]] bool pass_size(char c);
+  [[nodiscard]] bool pass_trailer(char c);
 
   State state_ = State::kSizeStart;
   std::uint64_t left_ = 0;  // of the chunk
   std::size_t digits_ = 0;
   std::size_t extension_ = 0;
+  std::string field_;  // the line of the trailer that has begun
+  std::size_t fields_ = 0;
+  std::size_t trailer_bytes_ = 0;
 };
 
 }  // namespace symcell::server

@@ -114,7 +114,7 @@ void respond_ranged(Call& call, Representation& representation, const std::strin
   call.response.set_header("Accept-Ranges", "bytes");
   const std::string if_range = call.header("If-Range");
   const auto range = if_range.empty() || if_range == etag
-                         ? parse_byte_range(call.header("Range"), bytes)
+                         ? parse_byte_range(call.exchange.range, bytes)
                          : RangeRequest{};
   if (range.unsatisfiable) {
     call.response.set_header("Content-Range", "bytes */" + std::to_string(bytes));

@@ -422,6 +422,90 @@ TEST_F(Cli, ABatchTakesNothingForAModelThatABatchHasLeft) {
 }
 
 // The signal comes to the batch alone, which passes it on.
+TEST_F(Cli, NoOutputTakesThePlaceOfAModelOrOfAnotherOutput) {
+  namespace fs = std::filesystem;
+  const std::string model = file("in.json");
+  fs::copy_file(ring_, model);
+  const std::string bytes = test::read_file(model);
+  fs::create_hard_link(model, file("hard.json"));
+  fs::create_symlink(model, file("soft.json"));
+  fs::create_symlink(folder_.path(), file("here"));
+  const std::string mesh = "mesh " + model + " --quiet ";
+  const auto refused = [&](const std::string& arguments, const std::string& word) {
+    const Outcome outcome = symcell(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments << outcome.err;
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << arguments << outcome.err;
+    EXPECT_EQ(test::read_file(model), bytes) << arguments;
+  };
+  for (const char* name : {"in.json", "hard.json", "soft.json", "here/in.json", "./in.json"}) {
+    for (const char* flag : {"--cell ", "--full ", "--stats ", "--report ", "--junit "}) {
+      refused(mesh + flag + file(name), "the model");
+    }
+  }
+  refused("mesh - --cell " + model + " < " + model, "the model");
+  // Files that do not exist yet, by other ways to the same name.
+  for (const char* name : {"s.json", "here/s.json", "./s.json", "no/../s.json"}) {
+    refused(mesh + "--cell " + file("s.json") + " --full " + file(name), "same file");
+    refused(mesh + "--cell " + file("s.json") + " --stats " + file(name), "same file");
+    refused(mesh + "--report " + file("s.json") + " --junit " + file(name), "same file");
+    EXPECT_FALSE(fs::exists(file("s.json"))) << name;
+  }
+  const std::string cell = file("c.json");
+  ASSERT_EQ(symcell(mesh + "--cell " + cell).exit_code, 0);
+  refused("convert " + cell + " --full " + cell, "same file");
+  refused("convert " + cell + " --cell x.vtu --full ./x.vtu", "same file");
+  refused("convert " + cell + " --cell - --full -", "standard output");
+  refused("transfer r.frd --cell " + cell + " --full " + cell, "same file");
+  refused("transfer " + cell + " --cell c.vtu --full " + cell, "same file");
+  // Nothing is lost in a device.
+  EXPECT_EQ(symcell(mesh + "--format vtu --cell /dev/null --full /dev/null").exit_code, 0);
+}
+
+TEST_F(Cli, WordsOfErrorsLeadOn) {
+  const auto says = [&](const std::string& arguments, const std::string& words) {
+    const Outcome outcome = symcell(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+  };
+  says("mesh " + ring_ + " --min-angel 3", "did you mean --min-angle?");
+  says("mesh " + ring_ + " --min-angel=3", "did you mean --min-angle?");
+  says("mesh " + ring_ + " --center 1e300,0", "1e60");
+  says("mesh " + ring_ + " --time-limit 1e308", "1e9");
+  ASSERT_EQ(symcell("mesh " + ring_ + " --cell " + file("c.vtu")).exit_code, 0);
+  const std::string cell = file("c.vtu");
+  says("transfer " + cell + " --cell " + cell + " --full " + file("f.vtu"), "--array");
+}
+
+TEST_F(Cli, ACellMayBeginWithAByteOrderMark) {
+  ASSERT_EQ(symcell("mesh " + ring_ + " --cell " + file("c.json")).exit_code, 0);
+  const std::string marked = "printf '\\357\\273\\277' | cat - " + file("c.json") + " | ";
+  const Outcome converted = symcell("convert - --full " + file("f.vtu"), marked);
+  EXPECT_EQ(converted.exit_code, 0) << converted.err;
+}
+
+TEST_F(Cli, ABatchWritesOverNoModel) {
+  namespace fs = std::filesystem;
+  const std::string parts = file("parts");
+  const std::string out = file("out");
+  fs::create_directory(parts);
+  fs::create_directory(out);
+  fs::copy_file(ring_, parts + "/a.json");
+  const std::string bytes = test::read_file(ring_);
+  const std::string batch = "batch " + parts + " --out " + out + " --format json ";
+  EXPECT_EQ(symcell(batch + "--summary " + parts + "/a.json").exit_code, 2);
+  EXPECT_EQ(symcell(batch + "--junit " + parts + "/a.json").exit_code, 2);
+  EXPECT_EQ(symcell(batch + "--junit j --summary j").exit_code, 2);
+  EXPECT_EQ(symcell(batch + "--summary " + out + "/a.json.report.json").exit_code, 2);
+  EXPECT_EQ(test::read_file(parts + "/a.json"), bytes);
+  // A model that lies where the mesh of another will be.
+  fs::copy_file(ring_, out + "/a.json.json");
+  fs::create_symlink(out + "/a.json.json", parts + "/b.json");
+  const Outcome linked = symcell(batch);
+  EXPECT_EQ(linked.exit_code, 2);
+  EXPECT_NE(linked.err.find("the model"), std::string::npos) << linked.err;
+  EXPECT_EQ(test::read_file(out + "/a.json.json"), bytes);
+}
+
 TEST_F(Cli, ABatchEndsWithASignal) {
   const std::filesystem::path in = folder_.path() / "in";
   std::filesystem::create_directories(in);

@@ -70,6 +70,34 @@ TEST_F(JobsHttpTest, AFinishedJobCanBeRepeated) {
   EXPECT_EQ(client().Post("/v1/jobs/" + id + "/rerun")->status, 404);
 }
 
+TEST_F(JobsHttpTest, AJobIsRunAgainWithNoOptionsButItsOwn) {
+  const std::string id = submit("{\"fold\":2}")["id"];
+  ASSERT_TRUE(reaches(id, "succeeded"));
+  const std::string path = "/v1/jobs/" + id + "/rerun";
+  for (const char* query : {"?max_area=1", "?zz=1", "?options[fold]=3"}) {
+    problem_of(client().Post(path + query, "", ""), 400);
+  }
+  for (const char* body : {"{\"options\":{\"fold\":3}}", "{bad", " "}) {
+    problem_of(client().Post(path, body, "application/json"), 400);
+  }
+  EXPECT_EQ(client().Post(path, "", "application/json")->status, 202);
+}
+
+TEST_F(JobsHttpTest, AnOptionGivenTwiceIsRefused) {
+  const auto refused = client().Post("/v1/jobs", job_body("{\"min_angle\":30,\"min_angle\":20}"),
+                                     "application/json");
+  const auto problem = problem_of(refused, 400);
+  EXPECT_EQ(problem["code"], "bad_option");
+  EXPECT_NE(std::string(problem["detail"]).find("twice"), std::string::npos);
+}
+
+TEST_F(JobsHttpTest, AByteOrderMarkBeforeJsonMeansNothing) {
+  const std::string mark = "\xef\xbb\xbf";
+  for (const std::string& body : {job_body(), square_json()}) {
+    EXPECT_EQ(client().Post("/v1/jobs", mark + body, "application/json")->status, 202);
+  }
+}
+
 TEST_F(JobsHttpTest, OnlyWhatHasEndedAndHasItsModelCanBeRepeated) {
   engine_.close_gate();
   const std::string id = submit()["id"];

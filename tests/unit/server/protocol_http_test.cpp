@@ -148,6 +148,54 @@ TEST_F(ProtocolHttpTest, ChunksOfTwoReadingsAreRefusedAtOnce) {
   }
 }
 
+TEST_F(ProtocolHttpTest, TrailersAreReadAndIgnored) {
+  const std::string model = square_json();
+  char size[32];
+  std::snprintf(size, sizeof size, "%zX\r\n", model.size());
+  const std::string begin =
+      "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: text/plain\r\n"
+      "Transfer-Encoding: chunked\r\n\r\n" +
+      (size + model) + "\r\n0\r\n";
+  const std::string next = "GET /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n";
+  for (const char* trailer : {"", "X-Sum: 1\r\n", "X-Sum: 1\r\nExpires: never\r\n"}) {
+    const std::string answers = exchange(begin + trailer + "\r\n" + next);
+    EXPECT_TRUE(answers.starts_with("HTTP/1.1 202 ")) << answers;
+    // What follows the trailer is the next request, and nothing else is.
+    EXPECT_NE(answers.find("HTTP/1.1 200 "), std::string::npos) << trailer << answers;
+  }
+  std::string many;
+  for (int i = 0; i < 501; ++i) many += "X: y\r\n";
+  for (const std::string& trailer :
+       {std::string("X-Sum : 1\r\n"), std::string("X: 1\r\n y\r\n"), std::string("X: 1\n"),
+        std::string("nothing\r\n"), std::string("X: a\rb\r\n"),
+        std::string("Content-Length: 5\r\n"), std::string("transfer-encoding: chunked\r\n"),
+        std::string("Host: y\r\n"), "X: " + std::string(70'000, 'y') + "\r\n", many}) {
+    const std::string answers = exchange(begin + trailer + "\r\n" + next);
+    EXPECT_TRUE(answers.starts_with("HTTP/1.1 400 ")) << trailer.substr(0, 40) << answers;
+    EXPECT_EQ(answers.find("HTTP/1.1 200 "), std::string::npos) << trailer.substr(0, 40);
+  }
+}
+
+TEST_F(ProtocolHttpTest, MethodsThatThereAreNotAreToldFromThoseThatAreNotTaken) {
+  const std::string end = " HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n";
+  for (const char* method : {"FOO", "get", "PROPFIND"}) {
+    const std::string answer = exchange(std::string(method) + " /healthz" + end);
+    EXPECT_TRUE(answer.starts_with("HTTP/1.1 501 ")) << answer;
+  }
+  const std::string trace = exchange("TRACE /healthz" + end);
+  EXPECT_TRUE(trace.starts_with("HTTP/1.1 405 ")) << trace;
+  EXPECT_NE(trace.find("\r\nAllow: GET, HEAD, OPTIONS\r\n"), std::string::npos) << trace;
+  EXPECT_TRUE(exchange("TRACE /nothing" + end).starts_with("HTTP/1.1 404 "));
+}
+
+TEST_F(ProtocolHttpTest, RangesOfOtherUnitsAreIgnored) {
+  for (const char* range : {"lines=1-2", "bytes=b-a", "nonsense"}) {
+    const auto answer = client().Get("/healthz", {{"Range", range}});
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->status, 200) << range;
+  }
+}
+
 TEST_F(ProtocolHttpTest, WhatTheGrammarAllowsIsTaken) {
   const std::string head = "POST /v1/jobs HTTP/1.1\r\nHost:x\r\nContent-Type:  text/plain \r\n";
   const std::string model = square_json();

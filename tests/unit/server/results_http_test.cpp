@@ -88,6 +88,8 @@ TEST_F(ResultsHttpTest, RawResultsHaveLengthsAndParts) {
     EXPECT_EQ(part("bytes=0-0")->body, bytes.substr(0, 1));
     EXPECT_EQ(part("bytes=3-11")->status, 206);
     EXPECT_EQ(part("bytes=3-11")->body, bytes.substr(3, 9));
+    EXPECT_EQ(part("lines=1-2")->status, 200);
+    EXPECT_EQ(part("Bytes=3-11")->status, 206);
     EXPECT_EQ(part("bytes=3-11")->get_header_value("Content-Range"), "bytes 3-11" + total);
     EXPECT_EQ(part("bytes=7-")->body, bytes.substr(7));
     EXPECT_EQ(part("bytes=-5")->body, bytes.substr(bytes.size() - 5));

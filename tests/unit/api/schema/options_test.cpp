@@ -19,6 +19,13 @@ Result<MeshOptions> from_text(const std::string& name, const std::string& text) 
   return options_from_texts({{name, text}});
 }
 
+TEST(OptionsWords, ATextInThePlaceOfAValueIsShownAsText) {
+  const auto options = options_from_json(nlohmann::json{{"plain", "true"}});
+  ASSERT_FALSE(options);
+  EXPECT_NE(options.error().message.find("got \"true\""), std::string::npos)
+      << options.error().message;
+}
+
 TEST(Options, DefaultsAreThoseOfTheCore) {
   const auto options = options_from_json(Json::object());
   ASSERT_TRUE(options);
