@@ -1,8 +1,8 @@
 #include "core/verify/verify_mesh.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
