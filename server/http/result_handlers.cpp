@@ -146,7 +146,7 @@ void respond_ranged(Call& call, Representation& representation, const std::strin
 
 void respond_representation(Call& call, Representation representation) {
   // A part of what is compressed is of no use to anybody.
-  const bool part = representation.ranged && call.request.has_header("Range");
+  const bool part = representation.ranged && !call.exchange.range.empty();
   const bool gzip = !part && accepts_gzip(call.exchange.accept_encoding);
   const std::string etag = "\"" + representation.etag_base + (gzip ? "-gzip\"" : "\"");
   call.response.set_header("ETag", etag);
