@@ -183,7 +183,12 @@ Result<std::optional<ModelAsMeshed>> model_as_meshed(
   if (!input) return error_of(input);
   const bool arcs = *input ? (*input)->pslg.has_arcs() : model.has_arcs();
   if (!*input && !arcs) return std::optional<ModelAsMeshed>{};
-  Pslg pslg = *input ? std::move((*input)->pslg) : model;
+  Pslg pslg;
+  if (*input) {
+    pslg = std::move((*input)->pslg);
+  } else {
+    pslg = model;
+  }
   if (!arcs || !plane::check_entities(pslg)) {
     ModelAsMeshed result;
     result.pslg = std::move(pslg);
