@@ -80,7 +80,6 @@ class ShortEdges {
       if (mesh_.is_removed(e)) continue;
       const Mesh::Halfedge_index h = mesh_.halfedge(e);
       if (!CGAL::Euler::does_satisfy_link_condition(e, mesh_)) continue;
-      if (is_thickness(h)) continue;
       const Mesh::Halfedge_index best =
           worst_after(h) >= worst_after(mesh_.opposite(h)) ? h : mesh_.opposite(h);
       if (worst_after(best) > 0) {
@@ -124,34 +123,6 @@ class ShortEdges {
     return worst;
   }
 
-  // Whether the edge joins two sheets that look away from each other, or at each other: the thickness of
-  // a wall or a gap, however thin, and no flaw of one sheet.
-  [[nodiscard]] bool is_thickness(Mesh::Halfedge_index h) const {
-    const double least = kSheetArea * length(h) * length(h);
-    const std::vector<Kernel::Vector_3> from = normals_at(mesh_.source(h), mesh_.target(h), least),
-                                        to = normals_at(mesh_.target(h), mesh_.source(h), least);
-    return std::any_of(from.begin(), from.end(), [&](const Kernel::Vector_3& n) {
-      return std::any_of(to.begin(), to.end(),
-                         [&](const Kernel::Vector_3& m) { return n * m < kOpposite; });
-    });
-  }
-
-  // Of the triangles at a vertex, without another one as a corner and not below an area.
-  [[nodiscard]] std::vector<Kernel::Vector_3> normals_at(Mesh::Vertex_index v,
-                                                         Mesh::Vertex_index without,
-                                                         double least_area) const {
-    std::vector<Kernel::Vector_3> normals;
-    for (const Mesh::Halfedge_index in : mesh_.halfedges_around_target(mesh_.halfedge(v))) {
-      const Mesh::Vertex_index a = mesh_.source(in), b = mesh_.target(mesh_.next(in));
-      if (a == without || b == without) continue;
-      const Kernel::Point_3& p = mesh_.point(v);
-      const Kernel::Vector_3 n = CGAL::cross_product(mesh_.point(b) - p, mesh_.point(a) - p);
-      const double size = std::sqrt(n.squared_length());
-      if (size > 2 * least_area) normals.push_back(n / size);
-    }
-    return normals;
-  }
-
   void collapse(Mesh::Halfedge_index h) {
     const Kernel::Point_3 place = mesh_.point(mesh_.target(h));
     const double moved = moved_by(h);
@@ -162,10 +133,6 @@ class ShortEdges {
 
   // Cosine of what a triangle may turn by: 60 degrees. Those that stand on a short edge turn most.
   static constexpr double kLeastTurn = 0.5;
-  // Cosine of 155 degrees: below it two normals are of two sheets, above it of a sharp edge.
-  static constexpr double kOpposite = -0.9;
-  // Of a sheet's triangles, by the square of the edge: smaller ones may look anywhere.
-  static constexpr double kSheetArea = 4;
 
   Mesh& mesh_;
   double most_;
