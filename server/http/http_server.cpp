@@ -349,8 +349,8 @@ class HttpServer::Impl final : public httplib::Server {
       suspended_.add(exchange->suspended, connection, [this, connection, exchange, goes_on] {
         resume(connection, exchange, goes_on);
       });
-    } else if (goes_on && !exchange->close && svr_sock_ != INVALID_SOCKET) {
-      lobby_.give_back(connection);
+    } else if (goes_on && !exchange->close) {
+      lobby_.give_back(connection);  // which drops it where the server stops
     } else {
       lobby_.let_go(connection);
     }

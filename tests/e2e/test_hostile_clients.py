@@ -242,7 +242,7 @@ class HostileClientsTest(unittest.TestCase):
         for _ in range(20):
             begin = time.monotonic()
             self.assertEqual(self.server.get("/healthz").status, 200)
-            self.assertLess(time.monotonic() - begin, 5)
+            self.assertLess(time.monotonic() - begin, 1)
         job = self.server.finished(self.server.submit(square())["id"])
         self.assertEqual(job["state"], "succeeded")
 
@@ -259,7 +259,7 @@ class HostileClientsTest(unittest.TestCase):
             connections.append(connection)
         begin = time.monotonic()
         self.assertEqual(self.server.get("/healthz").status, 200)
-        self.assertLess(time.monotonic() - begin, 5)
+        self.assertLess(time.monotonic() - begin, 1)
         for connection in connections:
             connection.close()
         until(lambda: self.server.get("/v1/jobs").status == 200, "others are served", 30)

@@ -190,32 +190,6 @@ TEST_F(DurableServiceTest, RetentionRemovesFilesOnceTheirRowsAreGoneForGood) {
   EXPECT_TRUE(std::filesystem::exists(folder));
 }
 
-// An engine of tests that does more than the stub.
-class WrappedEngine : public JobEngine {
- public:
-  [[nodiscard]] Result<ModelFormat> recognise(const std::filesystem::path& model,
-                                              std::optional<ModelFormat> promised,
-                                              ExecutionContext& context) override {
-    return stub_.recognise(model, promised, context);
-  }
-  [[nodiscard]] Result<std::string> inspect(const std::filesystem::path& model,
-                                            ModelFormat format,
-                                            const MeshOptions& options,
-                                            ExecutionContext& context) override {
-    return stub_.inspect(model, format, options, context);
-  }
-  [[nodiscard]] Result<void> draw(const std::filesystem::path& model,
-                                  ModelFormat format,
-                                  const MeshOptions& options,
-                                  const std::filesystem::path& picture,
-                                  ExecutionContext& context) override {
-    return stub_.draw(model, format, options, picture, context);
-  }
-
- protected:
-  StubEngine stub_;
-};
-
 // Runs one job to its end; returns it.
 Job run_one(JobEngine& engine, const std::filesystem::path& folder) {
   Metrics metrics;
@@ -230,13 +204,13 @@ Job run_one(JobEngine& engine, const std::filesystem::path& folder) {
   return *jobs.find(id);
 }
 
-class LosingEngine final : public WrappedEngine {
+class LosingEngine final : public StubEngine {
  public:
   [[nodiscard]] Result<void> run(const EngineJob& job, ExecutionContext& context) override {
     WatchedDisk::refuse(Call::kData, "-wal", 3);
     job.on_lost_worker();
     WatchedDisk::refuse(Call::kData, "", 0);
-    return stub_.run(job, context);
+    return StubEngine::run(job, context);
   }
 };
 
@@ -247,10 +221,10 @@ TEST(DurabilityTest, ALostWorkerIsCountedOnceHoweverOftenTheDiskRefuses) {
   EXPECT_EQ(run_one(engine, folder.path()).lost_workers, 1);
 }
 
-class LargeEngine final : public WrappedEngine {
+class LargeEngine final : public StubEngine {
  public:
   [[nodiscard]] Result<void> run(const EngineJob& job, ExecutionContext& context) override {
-    auto done = stub_.run(job, context);
+    auto done = StubEngine::run(job, context);
     std::ofstream(job.statistics, std::ios::app) << std::string(2 * kSmallFileBytes, ' ');
     return done;
   }

@@ -1,4 +1,4 @@
-// An engine that meshes nothing: tests decide when it ends and how.
+// An engine that meshes nothing: tests decide when it ends and how, and may derive others that do more.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,7 @@
 
 namespace symcell::server::test {
 
-class StubEngine final : public JobEngine {
+class StubEngine : public JobEngine {
  public:
   // Writes a small ring cell, once open() and unless told to fail.
   [[nodiscard]] Result<void> run(const EngineJob& job, ExecutionContext& context) override;

@@ -1,9 +1,11 @@
 // Models that are symmetric in shape only: their folds and the outlines that are chosen.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <limits>
 #include <numbers>
 
 #include "core/geometry/rotation.hpp"
@@ -165,11 +167,15 @@ TEST(Shape, DetectionIsFastAtAnyTolerance) {
   pslg.holes.push_back({0, 0});
   for (const double tolerance : {1e-6, 1e-4, 1e-3, 1e-2, 0.1}) {
     SCOPED_TRACE(tolerance);
-    const std::clock_t begin = std::clock();
-    ExecutionContext context;
-    ASSERT_TRUE(inspect_pslg(pslg, within(tolerance), context));
-    const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    EXPECT_LT(seconds, 30);  // a third of one is usual; what looks at all pairs takes minutes
+    // The least of three: another program on the machine may slow down any of them.
+    double seconds = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; ++i) {
+      const std::clock_t begin = std::clock();
+      ExecutionContext context;
+      ASSERT_TRUE(inspect_pslg(pslg, within(tolerance), context));
+      seconds = std::min(seconds, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+    }
+    EXPECT_LT(seconds, 1.5);  // a third is usual; sanitizers and a busy machine take more
   }
 }
 

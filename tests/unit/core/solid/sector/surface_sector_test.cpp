@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "core/solid/sector/symmetrise.hpp"
 #include "core/solid/surface/weld.hpp"
@@ -68,35 +70,38 @@ SymmetryCellMesh boundary_of(const TriangleSurface& surface, const Symmetry& sym
   return cell;
 }
 
-TEST(SurfaceSectorSource, FacetsOffTheSurfaceAreFound) {
+// The boundary of a prism of five sides, held against that prism.
+class PrismBoundary : public testing::Test {
+ protected:
+  void SetUp() override {
+    const TriangleSurface surface = asymmetric_prism(shape, 7);
+    auto made = symmetrise_surface(surface, with_fold(shape.fold), context);
+    ASSERT_TRUE(made) << made.error().message;
+    source = std::move(*made);
+    cell = boundary_of(surface, source->symmetry());
+  }
+  Result<void> check() { return source->check_boundary(cell, context); }
+
   PrismShape shape;
-  shape.fold = 5;
-  const TriangleSurface surface = asymmetric_prism(shape, 7);
   ExecutionContext context;
-  const auto source = symmetrise_surface(surface, with_fold(5), context);
-  ASSERT_TRUE(source) << source.error().message;
-  const Symmetry& symmetry = (*source)->symmetry();
-  const double tolerance = kSurfaceSymmetryToleranceRel * symmetry.diameter;
-  SymmetryCellMesh cell = boundary_of(surface, symmetry);
-  EXPECT_TRUE((*source)->check_boundary(cell, context));
+  std::unique_ptr<SectorSource> source;
+  SymmetryCellMesh cell;
+};
+
+TEST_F(PrismBoundary, FacetsOffTheSurfaceAreFound) {
+  const double tolerance = kSurfaceSymmetryToleranceRel * source->symmetry().diameter;
+  EXPECT_TRUE(check());
   // The end faces are the lowest and the highest of all.
   const auto top = std::max_element(cell.orbit_points.begin(), cell.orbit_points.end(),
                                     [](const Point3& p, const Point3& q) { return p.z < q.z; });
   top->z += 0.9 * tolerance;
-  EXPECT_TRUE((*source)->check_boundary(cell, context));
+  EXPECT_TRUE(check());
   top->z += 0.2 * tolerance;
-  EXPECT_EQ((*source)->check_boundary(cell, context).error().code, ErrorCode::kInternal);
+  EXPECT_EQ(check().error().code, ErrorCode::kInternal);
 }
 
-TEST(SurfaceSectorSource, FacetsAcrossTheSolidAreFound) {
-  PrismShape shape;
-  shape.fold = 5;
-  const TriangleSurface surface = asymmetric_prism(shape, 7);
-  ExecutionContext context;
-  const auto source = symmetrise_surface(surface, with_fold(5), context);
-  ASSERT_TRUE(source) << source.error().message;
-  SymmetryCellMesh cell = boundary_of(surface, (*source)->symmetry());
-  ASSERT_TRUE((*source)->check_boundary(cell, context));
+TEST_F(PrismBoundary, FacetsAcrossTheSolidAreFound) {
+  ASSERT_TRUE(check());
   // Its nodes are on the surface, each on another triangle: the first at the bottom, the others at
   // the top, on other sides of the axis.
   const auto at_angle = [&](double z, double angle) {
@@ -116,7 +121,7 @@ TEST(SurfaceSectorSource, FacetsAcrossTheSolidAreFound) {
         return p.z < q.z;
       })->z;
   cell.boundary = {at_angle(high - shape.height, 0), at_angle(high, 2), at_angle(high, 4)};
-  EXPECT_EQ((*source)->check_boundary(cell, context).error().code, ErrorCode::kInternal);
+  EXPECT_EQ(check().error().code, ErrorCode::kInternal);
 }
 
 // Sectors of another surface are held against the input, not against what they are cut from.
