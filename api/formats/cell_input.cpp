@@ -251,7 +251,9 @@ std::int32_t int_of(const Json& json) {
   return json.get<std::int32_t>();
 }
 
+// Throws where it is no list of them.
 std::vector<std::int32_t> ints_of(const Json& json) {
+  if (!json.is_array()) throw std::out_of_range("no list of integers");
   std::vector<std::int32_t> values;
   values.reserve(json.size());
   for (const Json& value : json) values.push_back(int_of(value));
@@ -294,7 +296,8 @@ Result<LooseCell> loose_from_json(const Json& json) {
   mesh.dimension = int_of(json.at("dimension"));
   mesh.order = int_of(json.at("order"));
   mesh.fold = int_of(json.at("fold"));
-  mesh.nodes_per_element = mesh.dimension + 1;
+  // Other dimensions are refused when the cell is rebuilt.
+  mesh.nodes_per_element = mesh.dimension == 2 ? 3 : 4;
   if (mesh.order == 2) mesh.nodes_per_element = mesh.dimension == 2 ? 6 : 10;
   mesh.axis_origin = point_of(json.at("axis").at("origin"));
   mesh.axis_direction = point_of(json.at("axis").at("direction"));

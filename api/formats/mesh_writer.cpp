@@ -125,7 +125,9 @@ Result<void> write_mesh(const SymmetryCellMesh& cell,
     case MeshFormat::kVtp: done = internal::write_vtp(mesh, options.vtu_encoding, out); break;
     case MeshFormat::kGlb: done = internal::write_glb(mesh, out); break;
     case MeshFormat::kSvg: internal::write_svg(mesh, out); break;
-    case MeshFormat::kStl: done = internal::write_stl(mesh, options.stl_ascii, out); break;
+    case MeshFormat::kStl:
+      done = internal::write_stl(mesh, options.vtu_encoding == VtuEncoding::kAscii, out);
+      break;
   }
   if (!done) return done;
   return out.finish();

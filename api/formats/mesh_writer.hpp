@@ -39,8 +39,7 @@ enum class PackedReals : std::uint8_t { kNone, kFloat32, kFloat64 };
 [[nodiscard]] std::optional<PackedReals> packed_reals_from_name(std::string_view name);
 
 struct WriteOptions {
-  VtuEncoding vtu_encoding = VtuEncoding::kAppendedRaw;
-  bool stl_ascii = false;
+  VtuEncoding vtu_encoding = VtuEncoding::kAppendedRaw;  // of STL: ascii or not
   DeckOptions deck = {};
   PackedReals packed = PackedReals::kNone;
 };

@@ -103,8 +103,8 @@ Result<MeshOutcome> mesh_to_count(
   const Budget budget(context, most);
   int meshes = 1;
   // Without a shorter edge there may be too many already: then none is looked for.
-  const int most_meshes = off < -kWithin ? kMostMeshes : meshes;
-  for (; meshes < most_meshes && std::abs(off) > kWithin; ++meshes) {
+  const bool too_few = off < -kWithin;
+  for (; too_few && meshes < kMostMeshes && std::abs(off) > kWithin; ++meshes) {
     SYMCELL_TRY(context.check());
     own.max_edge = std::min(options.max_edge, search.next());
     auto made = mesh(own);

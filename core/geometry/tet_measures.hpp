@@ -86,8 +86,8 @@ struct LinkFace {
 // The tetrahedron (p, face): as min_dihedral_sine and measure_tet (without the centre), up to
 // rounding, in one go. The measures are left out where the sine is not above `least`.
 struct LinkTet {
-  double sine =
-      -1;  // where it is not above `least`: no more than that, -1 for a negative `least` alone
+  // At most `least` where it is not above it, and then of no further meaning.
+  double sine = -1;
   TetMeasures measures;
 
   LinkTet(Point3 p, const LinkFace& f, double least) {

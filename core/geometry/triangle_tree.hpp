@@ -45,7 +45,7 @@ class TriangleTree {
     std::int32_t last = -1;
     return within(p, reach, last);
   }
-  // The same, beginning at `last` as above.
+  // The same, beginning at `last` as above, which afterwards names the triangle that was found and no other.
   [[nodiscard]] bool within(Point3 p, double reach, std::int32_t& last) const;
 
   struct Meeting {

@@ -25,10 +25,12 @@ class LinkChecker {
  public:
   LinkChecker(const SymmetryCellMesh& cell,
               const std::vector<char>& marked,
+              const std::vector<std::int32_t>& at_surface,
               const std::vector<InnerFacet>& inner,
               const std::vector<char>& pinched)
       : cell_(cell),
         marked_(marked),
+        at_surface_(at_surface),
         inner_(inner),
         pinched_(pinched),
         dimension_(cell.dimension),
@@ -39,10 +41,9 @@ class LinkChecker {
     join_places();
     std::vector<std::uint32_t> class_of(cell_.nodes.size(), 0);
     std::vector<std::uint64_t> edges;  // each as often as it has classes
-    for (std::size_t e = 0; e < place_.size(); ++e) {
-      if (place_[e] == 0) continue;
-      const std::size_t first = place_[e] * kPlaces;
-      const std::int32_t* v = element(e);
+    for (const std::int32_t e : at_surface_) {
+      const std::size_t first = place_[at(e)] * kPlaces;
+      const std::int32_t* v = element(at(e));
       for (std::size_t i = 0; i < corners_; ++i) {
         if (!is_marked(v[i])) continue;
         const auto own = static_cast<std::uint32_t>(root(first + i));
@@ -117,12 +118,7 @@ class LinkChecker {
   void join_places() {
     place_.assign(cell_.element_count(), 0);
     std::uint32_t count = 0;
-    for (std::size_t e = 0; e < place_.size(); ++e) {
-      const std::int32_t* v = element(e);
-      if (std::any_of(v, v + corners_, [&](std::int32_t n) { return is_marked(n); })) {
-        place_[e] = ++count;
-      }
-    }
+    for (const std::int32_t e : at_surface_) place_[at(e)] = ++count;
     joined_ = UnionFind((count + std::size_t{1}) * kPlaces);
     const auto d = static_cast<std::size_t>(dimension_);
     for (const InnerFacet& f : inner_) {
@@ -145,6 +141,7 @@ class LinkChecker {
 
   const SymmetryCellMesh& cell_;
   const std::vector<char>& marked_;
+  const std::vector<std::int32_t>& at_surface_;
   const std::vector<InnerFacet>& inner_;
   const std::vector<char>& pinched_;
   std::int32_t dimension_;
@@ -299,9 +296,10 @@ std::vector<ElementFacet> FacetTable::outer() const {
 
 Result<void> check_cell_links(const SymmetryCellMesh& cell,
                               const std::vector<char>& marked,
+                              const std::vector<std::int32_t>& at_surface,
                               const std::vector<InnerFacet>& inner,
                               const std::vector<char>& pinched) {
-  return LinkChecker(cell, marked, inner, pinched).check_links();
+  return LinkChecker(cell, marked, at_surface, inner, pinched).check_links();
 }
 
 }  // namespace symcell::internal

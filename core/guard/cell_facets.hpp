@@ -85,10 +85,11 @@ class FacetTable {
 };
 
 // Whether all elements at a node of the cell's surface, in space at an edge of it too, hang
-// together by facets. `marked`: the nodes of the surface.  `inner`: facets with a marked node and
-// two elements.  `pinched`: per orbit; there the full mesh touches itself, and the cell may.
+// together by facets. `marked`: the nodes of the surface.  `at_surface`: the elements with one of them,
+// ascending.  `inner`: facets with a marked node and two elements.  `pinched`: per orbit; there the full mesh touches itself, and the cell may.
 [[nodiscard]] Result<void> check_cell_links(const SymmetryCellMesh& cell,
                                             const std::vector<char>& marked,
+                                            const std::vector<std::int32_t>& at_surface,
                                             const std::vector<InnerFacet>& inner,
                                             const std::vector<char>& pinched);
 

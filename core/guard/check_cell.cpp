@@ -57,7 +57,7 @@ class CellChecker {
     SYMCELL_TRY(check_bounds());
     SYMCELL_TRY(check_outer());
     SYMCELL_TRY(check_boundary());
-    return check_cell_links(cell_, marked_, inner_, pinched_);
+    return check_cell_links(cell_, marked_, at_surface_, inner_, pinched_);
   }
 
  private:

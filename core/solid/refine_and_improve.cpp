@@ -196,10 +196,11 @@ Result<void> improve(std::optional<Editor>& working,
   Surgery surgery(*working, criteria);
   surgery.keep_size();
   Improver improver(surgery, criteria, context);
-  const std::size_t left = count_bad(*working, criteria);
-  const double share = static_cast<double>(left) / static_cast<double>(mesh.tet_count());
-  if (mesh.tet_count() <= work.limits.most_followed && share > work.limits.lost_share) {
-    return improver.mend(goal);
+  if (mesh.tet_count() <= work.limits.most_followed) {
+    const auto left = static_cast<double>(count_bad(*working, criteria));
+    if (left > work.limits.lost_share * static_cast<double>(mesh.tet_count())) {
+      return improver.mend(goal);
+    }
   }
   const double costly_deg = std::max(work.limits.costly_goal_deg, options.min_dihedral_deg);
   const double costly_goal = std::sin(costly_deg * std::numbers::pi / 180);

@@ -23,9 +23,11 @@ constexpr double kCoarsest = 1.06;
 
 // A node of an arc may be off it by the asymmetry of the arc's ends and by as much again where it was
 // averaged, on either side, and an arc's middle moves with both of its ends.
-constexpr double kAsymmetries = 8;
+constexpr double kArcAsymmetries = 8;
+// Of an arc's radius: a node that is farther off it is of another one.
+constexpr double kMostOfRadius = 0.02;
 // Of the diameter: what is farther from the nearest copy has none.
-constexpr double kNearMissRel = 1e-3;
+constexpr double kNearMissOfArcsRel = 1e-3;
 
 double diameter_of(const std::vector<Point2>& points) {
   Point2 low = points.front(), high = low;
@@ -58,8 +60,16 @@ double asymmetry_of_arcs(const Pslg& pslg,
 
 class ArcsAtNodes {
  public:
-  ArcsAtNodes(Pslg pslg, std::span<const Point3> corners, double tolerance, double same_circle)
-      : pslg_(std::move(pslg)), corners_(corners), tree_(corners), tolerance_(tolerance) {
+  ArcsAtNodes(Pslg pslg,
+              std::span<const Point3> corners,
+              double least_tolerance,
+              double tolerance,
+              double same_circle)
+      : pslg_(std::move(pslg)),
+        corners_(corners),
+        tree_(corners),
+        least_tolerance_(least_tolerance),
+        tolerance_(tolerance) {
     std::vector<char> is_node(pslg_.vertices.size());
     for (std::size_t v = 0; v < is_node.size(); ++v) {
       const Point2 p = pslg_.vertices[v];
@@ -96,13 +106,16 @@ class ArcsAtNodes {
   [[nodiscard]] std::vector<std::pair<double, Point2>> nodes_on(const plane::ArcChain& chain,
                                                                 Point2 begin) const {
     std::vector<std::pair<double, Point2>> nodes;
-    const double side = chain.radius + tolerance_;
+    // Small arcs need not be found as far off as large ones may have been moved.
+    const double tolerance =
+        std::max(least_tolerance_, std::min(tolerance_, kMostOfRadius * chain.radius));
+    const double side = chain.radius + tolerance;
     const Point2 c = chain.centre, u = begin - c;
-    const double margin = 2 * tolerance_ / chain.radius;
+    const double margin = 2 * tolerance / chain.radius;
     tree_.within_box({c.x - side, c.y - side, 0}, {c.x + side, c.y + side, 0},
                      [&](std::int32_t node) {
                        const Point2 p{corners_[at(node)].x, corners_[at(node)].y};
-                       if (std::abs(distance(p, c) - chain.radius) > tolerance_) return;
+                       if (std::abs(distance(p, c) - chain.radius) > tolerance) return;
                        const double sense = std::copysign(1, chain.angle);
                        double turn = sense * std::atan2(cross(u, p - c), dot(u, p - c));
                        if (turn < 0) turn += 2 * std::numbers::pi;
@@ -160,6 +173,7 @@ class ArcsAtNodes {
   Pslg pslg_;
   std::span<const Point3> corners_;
   PointTree tree_;
+  double least_tolerance_;
   double tolerance_;
   plane::ArcChains arcs_;
   std::vector<std::int32_t> number_;
@@ -195,12 +209,14 @@ Result<std::optional<ModelAsMeshed>> model_as_meshed(
     return std::optional<ModelAsMeshed>{std::move(result)};
   }
   const double diameter = diameter_of(pslg.vertices);
-  double tolerance = std::max(kOnArcRel, options.model_tolerance_rel.value_or(0)) * diameter;
+  const double least = std::max(kOnArcRel, options.model_tolerance_rel.value_or(0)) * diameter;
+  double tolerance = least;
   if (rotate && !options.model_tolerance_rel) {
-    tolerance = std::max(tolerance,
-                         kAsymmetries * asymmetry_of_arcs(pslg, rotate, kNearMissRel * diameter));
+    tolerance =
+        std::max(tolerance,
+                 kArcAsymmetries * asymmetry_of_arcs(pslg, rotate, kNearMissOfArcsRel * diameter));
   }
-  ArcsAtNodes arcs_at_nodes(std::move(pslg), corners, tolerance, kSameCircleRel * diameter);
+  ArcsAtNodes arcs_at_nodes(std::move(pslg), corners, least, tolerance, kSameCircleRel * diameter);
   return std::optional<ModelAsMeshed>{arcs_at_nodes.run()};
 }
 

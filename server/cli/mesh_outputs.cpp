@@ -68,7 +68,6 @@ Result<WriteOptions> write_options(const OutputArguments& arguments) {
                 "--encoding must be raw, zlib or ascii, not " + arguments.encoding);
   }
   options.vtu_encoding = *encoding;
-  options.stl_ascii = *encoding == VtuEncoding::kAscii;
   return options;
 }
 

@@ -19,6 +19,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "server/cli/interrupt.hpp"
 #include "server/cli/progress_bar.hpp"
@@ -116,8 +117,12 @@ Result<std::string> result_of(const SupervisedWork& work, ExecutionContext& cont
   server::apply_limits({settings.memory_bytes, 0});
   server::prepare_heap();
   server::reserve_heap(settings.memory_bytes);
-  const Result<std::string> result = result_of(work, context);
-  std::fflush(nullptr);
+  Result<std::string> result = result_of(work, context);
+  // The last of what was written leaves only now.
+  if (std::fflush(nullptr) != 0 && result) {
+    result = fail(ErrorCode::kWriteFailed, std::string("cannot write standard output: ") +
+                                               std::generic_category().message(errno));
+  }
   const std::string text = encode(result);
   std::string_view rest = text;
   while (!rest.empty()) {

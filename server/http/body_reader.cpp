@@ -144,13 +144,6 @@ std::optional<ArrivedBytes> receive_bytes(Call& call,
 
 bool receive_nothing(Call& call) {
   if (!call.exchange.body_expected) return true;
-  bool empty = true;
-  const bool read = call.exchange.declared_bytes == 0 &&
-                    (*call.body)([&](const char*, std::size_t size) { return empty = size == 0; });
-  if (read && empty) {
-    call.exchange.body_consumed = true;
-    return true;
-  }
   refuse_broken(call, "this call takes no body");
   return false;
 }

@@ -76,7 +76,7 @@ struct ArrivedForm {
                                                         const std::filesystem::path& destination,
                                                         std::size_t max_bytes);
 
-// For calls that take no body. False: there is one, the call is answered.
+// For calls that take no body. False: one is announced, the call is answered; it is not read.
 [[nodiscard]] bool receive_nothing(Call& call);
 
 // A multipart/form-data body with a file `model` and a text `options`.

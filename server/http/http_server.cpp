@@ -297,7 +297,6 @@ class HttpServer::Impl final : public httplib::Server {
     // httplib would compress, and inflate without a bound, by itself.
     exchange.accept_encoding = take_header(request, "Accept-Encoding");
     exchange.content_encoding = take_header(request, "Content-Encoding");
-    request.ranges.clear();
     const std::string length = request.get_header_value("Content-Length");
     exchange.body_expected =
         request.has_header("Transfer-Encoding") || (!length.empty() && length != "0");

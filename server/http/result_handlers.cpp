@@ -227,7 +227,6 @@ std::optional<WriteOptions> write_options_of(Call& call) {
       return std::nullopt;
     }
     options.vtu_encoding = *encoding;
-    options.stl_ascii = *encoding == VtuEncoding::kAscii;
   }
   if (call.has_parameter("packed")) {
     const auto packed = packed_reals_from_name(call.parameter("packed"));
@@ -283,7 +282,7 @@ void send_mesh(Call& call, ServiceContext& context, MeshPart part) {
   // Raw binary files cost little more than copying, so that they are made once more to be measured.
   const bool ranged =
       (*format == MeshFormat::kVtu && options->vtu_encoding == VtuEncoding::kAppendedRaw) ||
-      (*format == MeshFormat::kStl && !options->stl_ascii);
+      (*format == MeshFormat::kStl && options->vtu_encoding != VtuEncoding::kAscii);
   // Read before the answer begins, so that a damaged archive is an error and no broken download.
   if (!head || ranged || takes_deck_options(*format)) {
     cell = std::make_shared<const SymmetryCellMesh>(read_cell(*job, context.jobs.files()));

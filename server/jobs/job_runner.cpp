@@ -296,9 +296,9 @@ void JobRunner::run(const Job& job) {
 void JobRunner::remove_files_if_deleted(const std::string& id) {
   try {
     if (parts_.store.find(id)) return;
+    parts_.faults.remove(id);
     parts_.store.make_durable();
     parts_.files.remove(id);
-    parts_.faults.remove(id);
   } catch (const std::exception& exception) {
     parts_.logger.error("job_bookkeeping_failed", {{"job", id}, {"what", exception.what()}});
   }

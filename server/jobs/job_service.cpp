@@ -120,6 +120,8 @@ void JobService::start() {
 
 void JobService::take_up_what_was_left() {
   using Fate = DataDirectory::Fate;
+  // What the last server erased, and perhaps not for good: files go when it lasts.
+  store_->make_durable();
   directory_.sweep_jobs(
       [this](const std::string& id) {
         if (const auto staged = staged_job(id)) {
@@ -368,12 +370,12 @@ bool JobService::erase(std::string_view id) {
   runner_->cancel(id);
   changes_.notify(id);
   logger_.info("job_deleted", {{"job", id}});
+  faults_.remove(id);  // nothing refers to it
   make_durable();
   // Where another server runs it, that one removes the files.
   const bool elsewhere = store_->shared() && job && job->state == JobState::kRunning;
   // A worker that still holds the job removes the files when it lets go and finds the row gone.
   if (!elsewhere && !runner_->progress(id)) files_.remove(id);
-  faults_.remove(id);
   return true;
 }
 

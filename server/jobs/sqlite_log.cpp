@@ -87,7 +87,7 @@ void SqliteLog::synchronise() {
 }
 
 // The kernel takes pages that it could not write for written, and says yes when asked again: what it has of the
-// log on the disk may have holes for ever. SQLite has the pages still. They go to the database, which is
+// log on the disk may have holes for ever. The kernel shows the pages still. They go to the database, which is
 // synchronised, and the log is emptied; that it is empty lasts when it is synchronised by a descriptor that has
 // heard of no refusal.
 void SqliteLog::begin_anew() {

@@ -71,12 +71,19 @@ InsertOutcome WatchedJobStore::insert(const Job& job,
 }
 
 void WatchedJobStore::make_durable() {
-  watched("make_durable", false, [&] { store_->make_durable(); });
-  {
+  // Taken before: what another thread commits meanwhile may not be among what lasts.
+  const bool committed = [&] {
     const std::lock_guard lock(mutex_);
-    if (!std::exchange(committed_, false)) return;
+    return std::exchange(committed_, false);
+  }();
+  try {
+    watched("make_durable", false, [&] { store_->make_durable(); });
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    committed_ = committed_ || committed;
+    throw;
   }
-  wrote();
+  if (committed) wrote();
 }
 
 std::int64_t WatchedJobStore::newest_copy() {

@@ -97,7 +97,9 @@ class Server:
         return (self.data_dir / "log").read_text()
 
     def log_events(self):
-        return [json.loads(line) for line in self.log_text().splitlines()]
+        """What was logged, but for a line that is being written."""
+        whole, _, _ = self.log_text().rpartition("\n")
+        return [json.loads(line) for line in whole.splitlines()]
 
     def stop(self):
         """SIGTERM; returns the exit code."""

@@ -59,6 +59,16 @@ class CommandTest(unittest.TestCase):
             self.assertIn("cancelled", text)
             self.assertLess(time.monotonic() - began, 2.5)
 
+    def test_a_standard_output_that_takes_nothing_is_an_error(self):
+        model, cell = self.folder / "square.json", self.folder / "cell.json"
+        subprocess.run([binary(), "mesh", str(model), "--cell", str(cell)], check=True, stderr=subprocess.DEVNULL)
+        for command in (["mesh", str(model), "--format", "vtu"], ["convert", str(cell), "--format", "vtu"]):
+            with open("/dev/full", "w") as full:
+                ended = subprocess.run([binary(), *command, "--cell", "-"], stdout=full, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(ended.returncode, 1, ended.stderr)
+            self.assertIn("standard output", ended.stderr)
+            self.assertIn("No space left", ended.stderr)
+
     def test_the_time_limit_ends_what_is_stuck(self):
         self.start("--time-limit", "1")
         os.kill(self.child, signal.SIGSTOP)

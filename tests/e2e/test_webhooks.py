@@ -73,6 +73,8 @@ class WebhooksTest(unittest.TestCase):
         wanted = base64.b64encode(hmac.new(SECRET, signed, hashlib.sha256).digest()).decode()
         self.assertEqual(headers["webhook-signature"], "v1," + wanted)
         self.assertEqual(headers["traceparent"], TRACE)
+        # The message is noted once its answer has been read, which is after the receiver has it.
+        until(lambda: '"webhook"' in server.log_text(), "the message is noted")
         events = server.log_events()
         trace = TRACE.split("-")[1]
         for name in ("job_accepted", "job_started", "job_finished", "webhook"):

@@ -90,7 +90,7 @@ TEST(Golden, Msh2) {
 }
 
 TEST(Golden, Solids) {
-  const WriteOptions ascii{VtuEncoding::kAscii, true};
+  const WriteOptions ascii{VtuEncoding::kAscii};
   expect_golden("prism_cell.json", written(prism(), MeshPart::kCell, MeshFormat::kJson));
   expect_golden("prism_cell.vtu", written(prism(), MeshPart::kCell, MeshFormat::kVtu, ascii));
   expect_golden("prism_full.vtu", written(prism(), MeshPart::kFull, MeshFormat::kVtu, ascii));

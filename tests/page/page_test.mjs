@@ -75,6 +75,15 @@ async function meshed(page) {
   await page.locator('#results').waitFor({ state: 'visible' });
 }
 
+/** Follows the link, and keeps what it downloads. */
+async function fetched(page, link, file) {
+  // Chromium drops, without a word, what a page lets download beyond ten files within a second.
+  await page.waitForTimeout(120);
+  const [download] = await Promise.all([
+    page.waitForEvent('download'), page.getByRole('link', { name: link, exact: true }).click()]);
+  await download.saveAs(file);
+}
+
 /** Share of the view's small picture that is not its background. */
 function shownShare(page) {
   return page.evaluate(async () => {
@@ -125,9 +134,7 @@ test('a part that is dropped is seen, meshed, unfolded and fetched', async () =>
 
   for (const format of ['vtu', 'msh', 'inp', 'glb', 'stl', 'json']) {
     for (const part of ['cell', 'full']) {
-      const [download] = await Promise.all([
-        page.waitForEvent('download'), page.getByRole('link', { name: `${part} as ${format}`, exact: true }).click()]);
-      await download.saveAs(`${process.env.SYMCELL_DOWNLOADS}/${part}.${format}`);
+      await fetched(page, `${part} as ${format}`, `${process.env.SYMCELL_DOWNLOADS}/${part}.${format}`);
     }
   }
   for (const by of ['Python', 'symcell', 'curl']) await page.getByRole('button', { name: by, exact: true }).click();

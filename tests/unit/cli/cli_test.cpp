@@ -421,7 +421,6 @@ TEST_F(Cli, ABatchTakesNothingForAModelThatABatchHasLeft) {
   EXPECT_NE(same.err.find("--out"), std::string::npos) << same.err;
 }
 
-// The signal comes to the batch alone, which passes it on.
 TEST_F(Cli, NoOutputTakesThePlaceOfAModelOrOfAnotherOutput) {
   namespace fs = std::filesystem;
   const std::string model = file("in.json");
@@ -506,6 +505,7 @@ TEST_F(Cli, ABatchWritesOverNoModel) {
   EXPECT_EQ(test::read_file(out + "/a.json.json"), bytes);
 }
 
+// The signal comes to the batch alone, which passes it on.
 TEST_F(Cli, ABatchEndsWithASignal) {
   const std::filesystem::path in = folder_.path() / "in";
   std::filesystem::create_directories(in);

@@ -142,6 +142,9 @@ TEST(CellInput, CellsWhoseCopiesDoNotFitAreRefused) {
   refused("/elements/0/0", 4294967296 + good["elements"][0][0].get<std::int64_t>(), "another type");
   refused("/lower/0", 4294967296 + good["lower"][0].get<std::int64_t>(), "another type");
   refused("/dimension", 4, "dimension");
+  refused("/dimension", 2147483647, "dimension");
+  refused("/regions", 1, "another type");
+  refused("/regions", Json({{"a", 1}}), "another type");
   refused("/axis/direction", {0, 0, 0}, "axis");
   refused("/axis/direction", {0, 1, 0}, "cell.pairs");
   refused("/nodes/0/0", 1e308, "coordinate");

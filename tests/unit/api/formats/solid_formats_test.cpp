@@ -190,7 +190,8 @@ TEST(Stl, CellHasBothBoundsAndTheFullMeshNone) {
 
 TEST(Stl, AsciiKeepsAllDigits) {
   const test::SolidSample sample = test::solid_samples().back();
-  std::istringstream in(written(sample.cell, MeshPart::kFull, MeshFormat::kStl, {{}, true}));
+  std::istringstream in(
+      written(sample.cell, MeshPart::kFull, MeshFormat::kStl, {VtuEncoding::kAscii}));
   const FullMeshView view(sample.cell);
   std::set<std::array<double, 3>> nodes;
   for (std::int64_t i = 0; i < view.node_count(); ++i) {
@@ -216,7 +217,9 @@ TEST(Stl, IsClosedAndNeedsNoRepair) {
   for (const test::SolidSample& sample : test::solid_samples()) {
     for (const MeshPart part : {MeshPart::kCell, MeshPart::kFull}) {
       for (const bool ascii : {true, false}) {
-        const auto surface = read_stl(written(sample.cell, part, MeshFormat::kStl, {{}, ascii}));
+        const auto surface =
+            read_stl(written(sample.cell, part, MeshFormat::kStl,
+                             {ascii ? VtuEncoding::kAscii : VtuEncoding::kAppendedRaw}));
         ASSERT_TRUE(surface) << surface.error().message;
         ExecutionContext context;
         const auto clean = solid::clean_surface(*surface, context);
