@@ -43,6 +43,8 @@ std::string_view without_leading_blank(std::string_view bytes) {
 
 // Formats whose first bytes are plain: they count whatever a name says.
 std::optional<ModelFormat> plain_format(std::string_view bytes, std::string_view text) {
+  // First: after a head of blanks the count of triangles may look like a brace.
+  if (has_size_of_binary_stl(bytes)) return ModelFormat::kStl;
   if (text.starts_with('{')) {
     return json_model_kind(bytes) == ModelKind::kPlc ? ModelFormat::kPlcJson
                                                      : ModelFormat::kPslgJson;
@@ -166,7 +168,7 @@ Result<Model> read_model(std::string_view bytes,
     return fail(ErrorCode::kEmptyFile, "the model is empty (" + std::to_string(bytes.size()) +
                                            " bytes); was the file written completely?");
   }
-  if (text.starts_with('<')) return unknown_format(text);
+  if (text.starts_with('<') && !has_size_of_binary_stl(bytes)) return unknown_format(text);
   std::optional<ModelFormat> found = plain_format(bytes, text);
   if (!found) found = format;
   if (!found) found = guessed_format(text);

@@ -110,10 +110,13 @@ bool has_binary_head(std::string_view bytes) {
 
 }  // namespace
 
+bool has_size_of_binary_stl(std::string_view bytes) {
+  return bytes.size() >= kHead &&
+         bytes.size() == kHead + std::size_t{stated_count(bytes)} * kTriangle;
+}
+
 bool looks_like_binary_stl(std::string_view bytes) {
-  if (bytes.size() < kHead) return false;
-  const bool exact = bytes.size() == kHead + std::size_t{stated_count(bytes)} * kTriangle;
-  return exact || has_binary_head(bytes);
+  return has_size_of_binary_stl(bytes) || has_binary_head(bytes);
 }
 
 Result<TriangleSurface> read_stl(std::string_view bytes) {

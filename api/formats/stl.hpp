@@ -15,6 +15,10 @@ namespace symcell {
 // (no triangles at all).
 [[nodiscard]] Result<TriangleSurface> read_stl(std::string_view bytes);
 
+// Whether the size is what a binary STL's count asks for. No text is: its count would be of a file of 25 GB
+// and more.
+[[nodiscard]] bool has_size_of_binary_stl(std::string_view bytes);
+
 // Whether bytes of unknown format are a binary STL: its count fits its size, or the head looks
 // like one though the count is wrong.
 [[nodiscard]] bool looks_like_binary_stl(std::string_view bytes);

@@ -283,9 +283,10 @@ TriangleTree::Meeting TriangleTree::first_met(Point3 from, Point3 direction) con
   return first;
 }
 
-void TriangleTree::visit_meeting_boxes(
-    const std::function<bool(std::int32_t, std::int32_t)>& visit) const {
+void TriangleTree::visit_meeting_boxes(const std::function<bool(std::int32_t, std::int32_t)>& visit,
+                                       double reach) const {
   if (nodes_.empty()) return;
+  const Point3 margin{reach, reach, reach};
   std::vector<Box3> boxes;
   boxes.reserve(items_.size());
   for (const Item& item : items_) {
@@ -293,13 +294,13 @@ void TriangleTree::visit_meeting_boxes(
     boxes.push_back(bounding_box(corners));
   }
   const auto items_meet = [&](std::int32_t i, std::int32_t j) {
-    return meet(boxes[i].low, boxes[i].high, boxes[j].low, boxes[j].high) &&
+    return meet(boxes[i].low - margin, boxes[i].high + margin, boxes[j].low, boxes[j].high) &&
            visit(items_[i].triangle, items_[j].triangle);
   };
   // Pairs of nodes whose boxes meet; a node with itself stands for the pairs within it.
   std::vector<std::pair<std::int32_t, std::int32_t>> pending{{0, 0}};
   const auto add = [&](std::int32_t a, std::int32_t b) {
-    if (meet(nodes_[a].low, nodes_[a].high, nodes_[b].low, nodes_[b].high)) {
+    if (meet(nodes_[a].low - margin, nodes_[a].high + margin, nodes_[b].low, nodes_[b].high)) {
       pending.emplace_back(a, b);
     }
   };

@@ -56,9 +56,10 @@ class TriangleTree {
   // Cost: O(log n) as a rule.
   [[nodiscard]] Meeting first_met(Point3 from, Point3 direction) const;
 
-  // Calls visit(s, t) once for each two triangles whose closed boxes have a point in common; visit
-  // returns true to stop.
-  void visit_meeting_boxes(const std::function<bool(std::int32_t, std::int32_t)>& visit) const;
+  // Calls visit(s, t) once for each two triangles whose closed boxes have a point in common, or, in
+  // every coordinate, lie no more than `reach` apart; visit returns true to stop.
+  void visit_meeting_boxes(const std::function<bool(std::int32_t, std::int32_t)>& visit,
+                           double reach = 0) const;
 
  private:
   struct Node {

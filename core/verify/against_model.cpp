@@ -311,23 +311,24 @@ double model_asymmetry(const ExaminedModel& model,
 }
 
 SurfaceTopology topology_of(std::span<const Triangle> triangles) {
-  std::vector<std::int32_t> vertices;
-  for (const Triangle& t : triangles) vertices.insert(vertices.end(), t.begin(), t.end());
-  std::ranges::sort(vertices);
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  const auto number = [&](std::int32_t v) {
-    return static_cast<std::int32_t>(std::ranges::lower_bound(vertices, v) - vertices.begin());
-  };
-  UnionFind shells(vertices.size());
-  for (const Triangle& t : triangles) {
-    const std::int32_t first = number(t[0]);
-    shells.join(first, number(t[1]));
-    shells.join(first, number(t[2]));
-  }
-  std::int64_t edges = 0;
   const std::vector<EdgeUse> uses = sorted_edge_uses(triangles);
-  for_each_edge(uses, [&](std::size_t, std::size_t) { ++edges; });
-  return {shells.class_count(), static_cast<std::int64_t>(vertices.size()) - edges +
+  UnionFind shells(triangles.size()), fans(3 * triangles.size());
+  const auto corner = [&](std::int32_t t, std::int32_t v) {
+    const Triangle& corners = triangles[static_cast<std::size_t>(t)];
+    return 3 * t + static_cast<std::int32_t>(std::ranges::find(corners, v) - corners.begin());
+  };
+  std::int64_t edges = 0;
+  for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
+    ++edges;
+    const EdgeUse& first = uses[begin];
+    for (std::size_t i = begin + 1; i < end; ++i) {
+      shells.join(first.triangle, uses[i].triangle);
+      for (const std::int32_t v : {first.low, first.high}) {
+        fans.join(corner(first.triangle, v), corner(uses[i].triangle, v));
+      }
+    }
+  });
+  return {shells.class_count(), static_cast<std::int64_t>(fans.class_count()) - edges +
                                     static_cast<std::int64_t>(triangles.size())};
 }
 

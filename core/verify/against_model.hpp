@@ -92,7 +92,8 @@ struct SidedTriangles {
 // and vertices only.  Cost: O(N log N); squares of the triangles at a vertex that pinches.
 [[nodiscard]] ModelPinches find_model_pinches(const SidedTriangles& solid);
 
-// Shells that hang together by vertices, and the Euler characteristic V - E + F.
+// Shells that hang together by edges, and the Euler characteristic V - E + F, a vertex counted once for each
+// fan of triangles that hang together by edges there: bodies that touch in a vertex are meshed apart.
 struct SurfaceTopology {
   std::size_t shells = 0;
   std::int64_t euler = 0;

@@ -11,6 +11,7 @@
 #include "tests/property/surface_case.hpp"
 #include "tests/support/random_layers.hpp"
 #include "tests/support/random_surface.hpp"
+#include "tests/support/touching_bodies.hpp"
 
 namespace symcell {
 namespace {
@@ -65,6 +66,17 @@ TEST(MeshSurfaceProperty, LayersKeepAllLaws) {
 
 TEST(MeshSurfaceProperty, TabsAndPocketsKeepAllLaws) {
   expect_all_layers_lawful(15, true);
+}
+
+// However their corners were rounded: one solid where faces touch, several where edges or corners do.
+TEST(MeshSurfaceProperty, BodiesThatTouchKeepAllLaws) {
+  const SeedRange seeds = property_seeds(30);
+  for (std::uint64_t seed = seeds.begin; seed < seeds.end; ++seed) {
+    const SurfaceCase c = make_surface_case(seed, test::make_touching_bodies(seed));
+    const auto outcome = mesh(c);
+    ASSERT_TRUE(outcome) << c << "\n" << outcome.error().message;
+    expect_lawful(c, *outcome);
+  }
 }
 
 }  // namespace

@@ -72,7 +72,8 @@ std::vector<std::string> broken_surface_laws(const SurfaceCase& c, const MeshedS
   }
   ModelTopology topology;
   topology.diameter = bounding_box(c.model.surface.vertices).diagonal();
-  topology.boundary = test::boundary_topology(c.model.surface);
+  topology.boundary =
+      c.model.boundary ? *c.model.boundary : test::boundary_topology(c.model.surface);
   for (std::string& law : broken_link_laws(outcome.mesh, topology)) {
     broken.push_back(std::move(law));
   }

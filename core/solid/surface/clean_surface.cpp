@@ -15,6 +15,7 @@
 #include "core/geometry/triangle_tree.hpp"
 #include "core/model/describe.hpp"
 #include "core/solid/surface/close_holes.hpp"
+#include "core/solid/surface/contacts.hpp"
 #include "core/solid/surface/mend_surface.hpp"
 #include "core/solid/surface/refusals.hpp"
 #include "core/solid/surface/resolve_crossings.hpp"
@@ -43,6 +44,10 @@ constexpr double kFlatHoleRel = 1e-6;
 constexpr std::array<double, 3> kJoinShares = {0.1, 0.03, 0.01};
 // Of the volume: what that may change, as much as a sector's may.
 constexpr double kJoinVolumeRel = 1e-3;
+// What rounding moves corners by, of the larger of the diameter and the largest coordinate: that of six
+// decimal digits, or of single precision, a few times. And of the tolerance at most.
+constexpr double kContactRel = 2e-6;
+constexpr double kMostContact = 0.01;
 // Of the tolerance. Wraps narrower than the least share of the diameter would take forever.
 constexpr double kWrapAlpha = 10;
 constexpr double kWrapOffset = 0.5;
@@ -83,7 +88,7 @@ class Cleaner {
                   "the surface is too small: " + describe_number(result_.diameter) +
                       " across; check its units");
     }
-    SYMCELL_TRY(mend());
+    SYMCELL_TRY(mend_with_contacts());
     if (result_.problem && repair_ == Repair::kWrap) {
       SYMCELL_TRY(wrap());
     }
@@ -108,13 +113,58 @@ class Cleaner {
     result_.problem = Error{code, std::move(message), listed(std::move(triangles)), {}};
   }
 
+  // Bodies that touch become one solid, or stay apart, at all copies alike; where that cannot be, as they
+  // are.
+  Result<void> mend_with_contacts() {
+    const CleanSurface as_read = result_;
+    auto done = mend();
+    if (deepened_.triangles.empty()) return done;
+    const auto again = [&](IndexedSurface from) {
+      result_ = as_read;
+      surface() = std::move(from);
+      turned_shells_ = 0;
+      turned_sources_.clear();
+      if (contact_ > 0) {
+        result_.repairs.push_back(
+            plural(contacts_.size(), "corner") + " of bodies that touch others within " +
+            describe_rounded(contact_) +
+            " put as far inside of them, so that all are treated alike" + such_as_at(contacts_));
+      }
+      return mend();
+    };
+    done = again(std::exchange(deepened_, {}));
+    if (done ? !result_.problem : is_limit(done.error().code)) return done;
+    contact_ = 0;
+    return again(as_read.surface);
+  }
+
+  // Where parts of the surface as read meet: whether it is to be mended from the start with bodies that
+  // touch put into each other.
+  Result<bool> contacts_found() {
+    if (untouched() || contacts_looked_for_) return false;
+    contacts_looked_for_ = true;
+    const Box3& box = result_.box;
+    const double largest = std::max({std::abs(box.low.x), std::abs(box.low.y), std::abs(box.low.z),
+                                     std::abs(box.high.x), std::abs(box.high.y),
+                                     std::abs(box.high.z), result_.diameter});
+    contact_ = std::min(kContactRel * largest, kMostContact * tolerance());
+    deepened_ = weld_exactly(input_);
+    auto places = deepen_contacts(deepened_, contact_, context_);
+    if (!places) return error_of(places);
+    contacts_ = std::move(*places);
+    if (!contacts_.empty()) return true;
+    contact_ = 0;
+    deepened_ = {};
+    return false;
+  }
+
   Result<void> mend() {
     for (auto step :
          {&Cleaner::drop_doubled, &Cleaner::drop_small, &Cleaner::close, &Cleaner::orient,
           &Cleaner::remove_flat, &Cleaner::resolve, &Cleaner::join_near}) {
       auto done = (this->*step)();
       if (!done) return done;
-      if (result_.problem) break;
+      if (result_.problem || !deepened_.triangles.empty()) break;
     }
     if (turned_shells_ > 0) {
       result_.repairs.push_back(plural(turned_shells_, "closed shell") + " turned inside out");
@@ -169,6 +219,9 @@ class Cleaner {
              {});
       return {};
     }
+    const auto contacts = contacts_found();
+    if (!contacts) return error_of(contacts);
+    if (*contacts) return {};
     surface() = std::move(single);
     // One triangle given from both sides may be part of the surface all the same.
     const std::size_t restored = restore_needed(surface(), cancelled);
@@ -387,15 +440,19 @@ class Cleaner {
     const std::size_t most = untouched() ? kMostNamedPairs : kMostPairs;
     auto pairs = self_intersections(surface(), most, context_);
     if (!pairs) return error_of(pairs);
-    const std::vector<OddEdge> touching = branching_edges(surface());
-    if (pairs->empty() && touching.empty()) return {};
+    std::vector<Point3> places;
+    const Touching touching = touching_places(surface(), &places);
+    if (pairs->empty() && touching.edges + touching.corners == 0) return {};
+    const auto contacts = contacts_found();
+    if (!contacts) return error_of(contacts);
+    if (*contacts) return {};
     std::string reason;
     const bool more = pairs->size() == most;
     if (!untouched() && !more) {
       auto resolved = resolved_surface(*pairs, reason);
       if (!resolved) return error_of(resolved);
       if (*resolved) {
-        record(**resolved, *pairs, touching);
+        record(**resolved, *pairs, places);
         surface() = std::move((*resolved)->surface);
         return orient_resolved();
       }
@@ -408,7 +465,7 @@ class Cleaner {
       result_.problem = refuse_intersecting(surface(), *pairs, more, reason, help);
     } else {
       result_.problem =
-          refuse_open(surface(), touching, (reason.empty() ? "" : reason + ". ") + help);
+          refuse_touching(surface(), places, (reason.empty() ? "" : reason + ". ") + help);
     }
     return {};
   }
@@ -448,7 +505,7 @@ class Cleaner {
                "the others fill, is not known (repair=all fills it)";
       return std::optional<Resolved>();
     }
-    auto resolved = resolve_crossings(oriented, pairs, tolerance(), context_, reason);
+    auto resolved = resolve_crossings(oriented, pairs, tolerance(), contact_, context_, reason);
     if (resolved && *resolved) {
       turned_shells_ = static_cast<std::size_t>(std::count(turned.begin(), turned.end(), true));
     }
@@ -457,7 +514,7 @@ class Cleaner {
 
   void record(const Resolved& resolved,
               const std::vector<std::pair<std::int32_t, std::int32_t>>& pairs,
-              const std::vector<OddEdge>& touching) {
+              const std::vector<Point3>& places) {
     if (!pairs.empty()) {
       std::string sentence = plural(pairs.size(), "pair") +
                              " of intersecting triangles cut along each other" +
@@ -482,10 +539,11 @@ class Cleaner {
       }
       result_.repairs.push_back(std::move(sentence));
     }
-    if (resolved.split_edges > 0) {
-      std::vector<Point3> places;
-      for (const OddEdge& e : touching) places.push_back(surface().points[e.a]);
-      result_.repairs.push_back(plural(resolved.split_edges, "edge") +
+    if (resolved.gap > 0) {
+      const auto& [edges, corners] = resolved.split;
+      result_.repairs.push_back((edges > 0 ? plural(edges, "edge") : "") +
+                                (edges > 0 && corners > 0 ? " and " : "") +
+                                (corners > 0 ? plural(corners, "corner") : "") +
                                 " at which the solid touches itself split, the sheets moved apart "
                                 "by twice " +
                                 describe_rounded(resolved.gap) + such_as_at(places));
@@ -571,6 +629,10 @@ class Cleaner {
   double tolerance_rel_;
   Repair repair_;
   CleanSurface result_;
+  bool contacts_looked_for_ = false;
+  double contact_ = 0;  // how deep bodies that touch were put into each other
+  std::vector<Point3> contacts_;
+  IndexedSurface deepened_;  // the surface as read with them; empty: none, or taken
   std::size_t turned_shells_ = 0;
   std::vector<std::int32_t> turned_sources_;  // of triangles of shells that were turned, ascending
 };

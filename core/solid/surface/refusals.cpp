@@ -82,6 +82,18 @@ Error refuse_open(const IndexedSurface& surface,
   return {ErrorCode::kNotWatertight, message + ". " + help, listed(std::move(elements)), {}};
 }
 
+Error refuse_touching(const IndexedSurface& surface,
+                      std::span<const Point3> places,
+                      const std::string& help) {
+  const std::vector<OddEdge> edges = branching_edges(surface);
+  if (!edges.empty()) return refuse_open(surface, edges, help);
+  return {ErrorCode::kSelfIntersection,
+          "the solid touches itself at " + plural(places.size(), "corner") + such_as_at(places) +
+              ". " + help,
+          {},
+          {}};
+}
+
 Error refuse_intersecting(const IndexedSurface& surface,
                           std::span<const std::pair<std::int32_t, std::int32_t>> pairs,
                           bool more,

@@ -38,6 +38,10 @@ struct OddEdge {
 [[nodiscard]] Error refuse_open(const IndexedSurface& surface,
                                 const std::vector<OddEdge>& edges,
                                 const std::string& help);
+// The same of edges with four and more triangles, if there are any, else kSelfIntersection at the `places`.
+[[nodiscard]] Error refuse_touching(const IndexedSurface& surface,
+                                    std::span<const Point3> places,
+                                    const std::string& help);
 // kSelfIntersection; `more`: there are more pairs than these. `reason`: why they were not mended,
 // or nothing.
 [[nodiscard]] Error refuse_intersecting(

@@ -11,7 +11,6 @@
 #include "core/geometry/triangle_tree.hpp"
 #include "core/model/describe.hpp"
 #include "core/solid/surface/refusals.hpp"
-#include "core/solid/surface/sheets.hpp"
 #include "core/solid/surface/solid_boundary.hpp"
 #include "core/solid/surface/weld.hpp"
 
@@ -27,6 +26,8 @@ constexpr std::size_t kMostPairs = 100'000;  // of a round
 constexpr double kGapShare = 0.01;
 // Thin triangles go where vertices nearer than this share of the tolerance can be joined.
 constexpr std::array<double, 3> kTidyShares = {0.03, 0.003, 0.0001};
+// How wide what bodies overlap by may be, in depths: that of edges whose sides rise by 15 degrees is.
+constexpr double kContactWidth = 8;
 // Rounding and gaps change the volume by far less.
 constexpr double kSameVolumeRel = 1e-4;
 
@@ -34,9 +35,14 @@ class Resolver {
  public:
   Resolver(const IndexedSurface& surface,
            double tolerance,
+           double contact,
            ExecutionContext& context,
            std::string& reason)
-      : input_(surface), tolerance_(tolerance), context_(context), reason_(reason) {}
+      : input_(surface),
+        tolerance_(tolerance),
+        contact_(contact),
+        context_(context),
+        reason_(reason) {}
 
   Result<std::optional<Resolved>> run(Pairs pairs) {
     result_.surface = input_;
@@ -50,6 +56,7 @@ class Resolver {
         return refused("pieces do not fit together near " +
                        describe_point(result_.surface.points[odd.front().a]));
       }
+      if (round == 0) close_contacts();
       const auto split = split_touching();
       if (!split) return refused(split.error());
       auto left = self_intersections(result_.surface, kMostPairs, context_);
@@ -75,19 +82,30 @@ class Resolver {
     return std::nullopt;
   }
 
+  // Bodies that touch in an edge or a corner now hang together by what they were put into each other:
+  // an edge or a corner again, at which they are taken apart.
+  void close_contacts() {
+    if (contact_ == 0) return;
+    IndexedSurface welded = weld_within(result_.surface, kContactWidth * contact_);
+    if (odd_edges(welded).empty() && same_volume(welded)) result_.surface = std::move(welded);
+  }
+
   // An edge whose ends are each in one sheet only is split in its middle as well.
   Result<void> split_touching() {
     constexpr int kTimes = 3;
     for (int i = 0; i < kTimes; ++i) {
-      const auto edges = branching_edges(result_.surface);
-      if (edges.empty()) return {};
-      if (i > 0) put_in_middles(edges);
+      if (i > 0) put_in_middles(branching_edges(result_.surface));
       const auto split = split_sheets(result_.surface, kGapShare * tolerance_);
       if (!split) return error_of(split);
-      if (i == 0) result_.split_edges += *split;
+      if (split->edges + split->corners == 0) return {};
+      if (i == 0) {
+        result_.split.edges += split->edges;
+        result_.split.corners += split->corners;
+      }
       result_.gap = kGapShare * tolerance_;
     }
-    if (branching_edges(result_.surface).empty()) return {};
+    const Touching left = touching_places(result_.surface);
+    if (left.edges + left.corners == 0) return {};
     return fail(ErrorCode::kNotWatertight, "sheets that touch could not be told apart");
   }
 
@@ -116,7 +134,9 @@ class Resolver {
     for (const double share : kTidyShares) {
       IndexedSurface welded = weld_within(result_.surface, share * tolerance_);
       if (welded.points.size() == result_.surface.points.size()) continue;
-      if (!odd_edges(welded).empty() || !branching_edges(welded).empty()) continue;
+      if (!odd_edges(welded).empty()) continue;
+      const Touching touching = touching_places(welded);
+      if (touching.edges + touching.corners > 0) continue;
       auto crossing = self_intersections(welded, 1, context_);
       if (!crossing) return error_of(crossing);
       if (!crossing->empty()) continue;
@@ -215,6 +235,7 @@ class Resolver {
 
   const IndexedSurface& input_;
   double tolerance_;
+  double contact_;
   ExecutionContext& context_;
   std::string& reason_;
   SolidBoundary first_;
@@ -227,9 +248,10 @@ Result<std::optional<Resolved>> resolve_crossings(
     const IndexedSurface& surface,
     std::span<const std::pair<std::int32_t, std::int32_t>> pairs,
     double tolerance,
+    double contact,
     ExecutionContext& context,
     std::string& reason) {
-  return Resolver(surface, tolerance, context, reason).run({pairs.begin(), pairs.end()});
+  return Resolver(surface, tolerance, contact, context, reason).run({pairs.begin(), pairs.end()});
 }
 
 }  // namespace symcell::solid

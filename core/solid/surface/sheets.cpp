@@ -12,14 +12,19 @@
 namespace symcell::solid {
 namespace {
 
-class Splitter {
+// Which triangles at an edge belong together, and material in between.
+class Pairing {
  public:
-  explicit Splitter(IndexedSurface& surface)
-      : surface_(surface), fans_(3 * surface.triangles.size()) {}
+  // kApart: material and empty space take turns round every edge. kOverlapping: bodies may overlap there
+  // by rounding; what material began first ends first.
+  enum class Bodies : std::uint8_t { kApart, kOverlapping };
 
-  Result<std::size_t> run(double gap) {
+  Pairing(const IndexedSurface& surface, Bodies bodies) : surface_(surface), bodies_(bodies) {}
+
+  // Calls join(use, use) for each two, and branches(uses) before at edges with more than two.
+  template <class Join, class Branches>
+  [[nodiscard]] Result<void> run(const Join& join, const Branches& branches) const {
     const std::vector<EdgeUse> uses = sorted_edge_uses(surface_.triangles);
-    std::vector<std::int32_t> touched;
     Result<void> state;
     for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
       if (!state) return;
@@ -27,17 +32,119 @@ class Splitter {
         join(uses[begin], uses[begin + 1]);
         return;
       }
-      ++split_;
-      touched.insert(touched.end(), {uses[begin].low, uses[begin].high});
+      branches(uses[begin]);
       state = pair_up({uses.begin() + static_cast<std::ptrdiff_t>(begin),
-                       uses.begin() + static_cast<std::ptrdiff_t>(end)});
+                       uses.begin() + static_cast<std::ptrdiff_t>(end)},
+                      join);
     });
-    if (!state) return error_of(state);
-    if (split_ == 0) return 0;
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    copy_points(touched, gap);
-    return split_;
+    return state;
+  }
+
+ private:
+  [[nodiscard]] Point3 apex(const EdgeUse& use) const {
+    const Triangle& t = surface_.triangles[use.triangle];
+    std::size_t i = 0;
+    while (t[i] == use.low || t[i] == use.high) ++i;
+    return surface_.points[t[i]];
+  }
+
+  // Sorts the triangles as they follow each other round the edge. Of those in one place the ones that
+  // material ends at come first: bodies touch there.
+  void sort_round(std::vector<EdgeUse>& ring, Point3 u, Point3 v) const {
+    const EdgeUse first = ring.front();
+    const Point3 reference = apex(first), side = cross(v - u, reference - u);
+    const auto part = [&](const EdgeUse& use) {
+      const Point3 p = apex(use);
+      switch (orientation_3(u, v, reference, p)) {
+        case Sign::kPositive: return 1;
+        case Sign::kNegative: return 3;
+        case Sign::kZero: break;
+      }
+      if (dot(side, cross(v - u, p - u)) < 0) return 2;  // opposite
+      return first.forward ? 0 : 4;
+    };
+    std::sort(ring.begin() + 1, ring.end(), [&](const EdgeUse& a, const EdgeUse& b) {
+      const int pa = part(a), pb = part(b);
+      if (pa != pb) return pa < pb;
+      const Sign turn = orientation_3(u, v, apex(a), apex(b));
+      return turn != Sign::kZero ? turn == Sign::kPositive : a.forward > b.forward;
+    });
+  }
+
+  template <class Join>
+  [[nodiscard]] Result<void> pair_up(std::vector<EdgeUse> ring, const Join& join) const {
+    const Point3 u = surface_.points[ring.front().low], v = surface_.points[ring.front().high];
+    sort_round(ring, u, v);
+    // Turning on beyond a triangle that runs against the edge one is behind it: material begins there.
+    std::ptrdiff_t depth = 0, least = 0;
+    std::size_t start = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      depth += ring[i].forward ? -1 : 1;
+      if (depth < least) {
+        least = depth;
+        start = i + 1;
+      }
+    }
+    std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(start % ring.size()),
+                ring.end());
+    if (depth != 0) return disordered(ring, 0);
+    std::vector<EdgeUse> begun;
+    std::size_t ended = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      if (!ring[i].forward) {
+        begun.push_back(ring[i]);
+        if (bodies_ == Bodies::kApart && begun.size() > ended + 1) return disordered(ring, i);
+      } else {
+        join(begun[ended++], ring[i]);
+      }
+    }
+    return {};
+  }
+
+  [[nodiscard]] Failure disordered(const std::vector<EdgeUse>& ring, std::size_t i) const {
+    const std::int32_t a = surface_.source[ring[(i + ring.size() - 1) % ring.size()].triangle],
+                       b = surface_.source[ring[i].triangle];
+    return fail(ErrorCode::kNotWatertight,
+                "the " + std::to_string(ring.size()) + " triangles at the edge from " +
+                    describe_point(surface_.points[ring.front().low]) + " to " +
+                    describe_point(surface_.points[ring.front().high]) + ", such as " +
+                    std::to_string(a) + " and " + std::to_string(b) +
+                    ", do not have material and empty space between them by turns",
+                {a, b});
+  }
+
+  const IndexedSurface& surface_;
+  Bodies bodies_;
+};
+
+// Corners of triangles at one point that hang together over edges.
+class Fans {
+ public:
+  explicit Fans(const IndexedSurface& surface)
+      : surface_(surface), fans_(3 * surface.triangles.size()) {}
+
+  void join(const EdgeUse& a, const EdgeUse& b) {
+    for (const std::int32_t v : {a.low, a.high}) {
+      fans_.join(corner(a.triangle, v), corner(b.triangle, v));
+    }
+  }
+
+  // `corner`: 3 a triangle.
+  [[nodiscard]] std::int32_t root(std::int32_t corner) { return fans_.root(corner); }
+
+  // Points with more than one, ascending.
+  [[nodiscard]] std::vector<std::int32_t> pinched() {
+    std::vector<std::int32_t> only(surface_.points.size(), -1);
+    std::vector<std::int32_t> result;
+    const auto corners = static_cast<std::int32_t>(3 * surface_.triangles.size());
+    for (std::int32_t c = 0; c < corners; ++c) {
+      const std::int32_t v = surface_.triangles[c / 3][c % 3];
+      if (only[v] < 0) only[v] = root(c);
+      if (only[v] != root(c)) result.push_back(v);
+    }
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
   }
 
  private:
@@ -47,46 +154,33 @@ class Splitter {
                                              corners.begin());
   }
 
-  void join(const EdgeUse& a, const EdgeUse& b) {
-    for (const std::int32_t v : {a.low, a.high}) {
-      fans_.join(corner(a.triangle, v), corner(b.triangle, v));
-    }
+  const IndexedSurface& surface_;
+  UnionFind fans_;
+};
+
+class Splitter {
+ public:
+  explicit Splitter(IndexedSurface& surface) : surface_(surface), fans_(surface) {}
+
+  Result<Touching> run(double gap) {
+    std::vector<std::int32_t> ends;
+    SYMCELL_TRY(Pairing(surface_, Pairing::Bodies::kApart)
+                    .run([&](const EdgeUse& a, const EdgeUse& b) { fans_.join(a, b); },
+                         [&](const EdgeUse& edge) {
+                           ++split_.edges;
+                           ends.insert(ends.end(), {edge.low, edge.high});
+                         }));
+    const std::vector<std::int32_t> touched = fans_.pinched();
+    std::sort(ends.begin(), ends.end());
+    split_.corners =
+        static_cast<std::size_t>(std::count_if(touched.begin(), touched.end(), [&](std::int32_t v) {
+          return !std::binary_search(ends.begin(), ends.end(), v);
+        }));
+    if (!touched.empty()) copy_points(touched, gap);
+    return split_;
   }
 
-  [[nodiscard]] Point3 apex(const EdgeUse& use) const {
-    const Triangle& t = surface_.triangles[use.triangle];
-    std::size_t i = 0;
-    while (t[i] == use.low || t[i] == use.high) ++i;
-    return surface_.points[t[i]];
-  }
-
-  Result<void> pair_up(std::vector<EdgeUse> ring) {
-    const Point3 u = surface_.points[ring.front().low], v = surface_.points[ring.front().high];
-    const Point3 reference = apex(ring.front());
-    const auto half = [&](const EdgeUse& use) {
-      return 1 - static_cast<int>(orientation_3(u, v, reference, apex(use)));
-    };
-    std::sort(ring.begin() + 1, ring.end(), [&](const EdgeUse& a, const EdgeUse& b) {
-      const int ha = half(a), hb = half(b);
-      return ha != hb ? ha < hb : orientation_3(u, v, apex(a), apex(b)) == Sign::kPositive;
-    });
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const EdgeUse& next = ring[(i + 1) % ring.size()];
-      if (ring[i].forward == next.forward) {
-        return fail(ErrorCode::kNotWatertight,
-                    "the " + std::to_string(ring.size()) + " triangles at the edge from " +
-                        describe_point(u) + " to " + describe_point(v) + ", such as " +
-                        std::to_string(surface_.source[ring[i].triangle]) + " and " +
-                        std::to_string(surface_.source[next.triangle]) +
-                        ", do not have material and empty space between them by turns",
-                    {surface_.source[ring[i].triangle], surface_.source[next.triangle]});
-      }
-      // Turning on beyond a triangle that runs against the edge one is behind it.
-      if (!ring[i].forward) join(ring[i], next);
-    }
-    return {};
-  }
-
+ private:
   void copy_points(const std::vector<std::int32_t>& touched, double gap) {
     std::vector<std::int32_t> number(surface_.points.size(), -1);
     for (std::size_t k = 0; k < touched.size(); ++k) {
@@ -139,14 +233,49 @@ class Splitter {
   [[nodiscard]] std::size_t fans_size() const { return 3 * surface_.triangles.size(); }
 
   IndexedSurface& surface_;
-  UnionFind fans_;  // of corners, 3 a triangle: joined across edges within a sheet
-  std::size_t split_ = 0;
+  Fans fans_;
+  Touching split_;
 };
 
 }  // namespace
 
-Result<std::size_t> split_sheets(IndexedSurface& surface, double gap) {
+Touching touching_places(const IndexedSurface& surface, std::vector<Point3>* places) {
+  Touching found;
+  Fans fans(surface);
+  std::vector<std::int32_t> ends;
+  const std::vector<EdgeUse> uses = sorted_edge_uses(surface.triangles);
+  for_each_edge(uses, [&](std::size_t begin, std::size_t end) {
+    if (end - begin > 2) {
+      ++found.edges;
+      ends.insert(ends.end(), {uses[begin].low, uses[begin].high});
+      if (places != nullptr) places->push_back(surface.points[uses[begin].low]);
+    }
+    for (std::size_t i = begin + 1; i < end; ++i) fans.join(uses[begin], uses[i]);
+  });
+  std::sort(ends.begin(), ends.end());
+  for (const std::int32_t v : fans.pinched()) {
+    if (std::binary_search(ends.begin(), ends.end(), v)) continue;
+    ++found.corners;
+    if (places != nullptr) places->push_back(surface.points[v]);
+  }
+  return found;
+}
+
+Result<Touching> split_sheets(IndexedSurface& surface, double gap) {
   return Splitter(surface).run(gap);
+}
+
+Result<std::vector<std::int32_t>> bodies_of(const IndexedSurface& surface) {
+  UnionFind bodies(surface.triangles.size());
+  SYMCELL_TRY(
+      Pairing(surface, Pairing::Bodies::kOverlapping)
+          .run([&](const EdgeUse& a, const EdgeUse& b) { bodies.join(a.triangle, b.triangle); },
+               [](const EdgeUse&) {}));
+  std::vector<std::int32_t> result(surface.triangles.size());
+  for (std::size_t t = 0; t < result.size(); ++t) {
+    result[t] = bodies.root(static_cast<std::int32_t>(t));
+  }
+  return result;
 }
 
 }  // namespace symcell::solid

@@ -58,6 +58,18 @@ constexpr const char* kAsciiStl =
     "solid x\n facet normal 0 0 1\n outer loop\n vertex 0 0 0\n vertex 1 0 0\n vertex 0 1 0\n"
     " endloop\n endfacet\nendsolid x\n";
 
+// After a head of blanks a count of 60 is '<', one of 91 '[', one of 123 '{'.
+TEST(ModelReader, BinaryStlIsToldWhateverItsCountLooksLike) {
+  for (const std::string& head :
+       {std::string(80, ' '), "ply\n" + std::string(76, ' '), "OFF " + std::string(76, '\n')}) {
+    for (unsigned count = 1; count < 256; ++count) {
+      std::string binary = head + std::string(4 + std::size_t{50} * count, '\0');
+      binary[80] = static_cast<char>(count);
+      EXPECT_EQ(recognised(binary), ModelFormat::kStl) << count;
+    }
+  }
+}
+
 TEST(ModelReader, SolidsAreToldFromContent) {
   EXPECT_EQ(recognised(kAsciiStl), ModelFormat::kStl);
   // A wrong name does not matter where the content is plain.

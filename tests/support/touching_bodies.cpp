@@ -1,0 +1,125 @@
+#include "tests/support/touching_bodies.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/random.hpp"
+#include "core/geometry/indexed_surface.hpp"
+#include "tests/support/surface_builders.hpp"
+
+namespace symcell::test {
+namespace {
+
+constexpr double kRadius = 3;
+
+// A prism over a convex polygon given counter-clockwise.
+TriangleSurface prism(const std::vector<std::pair<double, double>>& polygon,
+                      double low,
+                      double high) {
+  TriangleSurface s;
+  const auto n = static_cast<std::int32_t>(polygon.size());
+  for (const double z : {low, high}) {
+    for (const auto& [x, y] : polygon) s.vertices.push_back({x, y, z});
+  }
+  for (std::int32_t i = 1; i + 1 < n; ++i) {
+    s.triangles.push_back({0, i + 1, i});
+    s.triangles.push_back({n, n + i, n + i + 1});
+  }
+  for (std::int32_t i = 0; i < n; ++i) {
+    const std::int32_t j = (i + 1) % n;
+    s.triangles.push_back({i, j, n + j});
+    s.triangles.push_back({i, n + j, n + i});
+  }
+  return s;
+}
+
+// As a file in single precision has it.  Volatile: GCC 12 leaves the rounding out of the last turns of the
+// loop below when it unrolls it.
+double rounded(double x) {
+  volatile float single = static_cast<float>(x);
+  return static_cast<double>(single);
+}
+
+void round_to_single(TriangleSurface& surface) {
+  for (Point3& p : surface.vertices) p = {rounded(p.x), rounded(p.y), rounded(p.z)};
+}
+
+}  // namespace
+
+bool is_one_solid(Touch touch) {
+  return touch != Touch::kEdge && touch != Touch::kEdgeFlush && touch != Touch::kCorner;
+}
+
+TriangleSurface body(Touch touch, double at, double width) {
+  const double w = width / 4;
+  switch (touch) {
+    case Touch::kFace: return box_surface({at, -w, 0.25}, {at + 1, w, 0.75});
+    case Touch::kFlush: return box_surface({at, -w, 0}, {at + 1, w, 1});
+    case Touch::kWhole: return box_surface({at, -2 * w, 0}, {at + 1, 2 * w, 1});
+    case Touch::kHanging: return box_surface({at, -w, 0.5}, {at + 1, w, 1.5});
+    case Touch::kEdge:
+      return prism({{at, 0}, {at + 1, -w}, {at + 1.5, 0}, {at + 1, w}}, 0.25, 0.75);
+    case Touch::kEdgeFlush: return prism({{at, 0}, {at + 1, -w}, {at + 1.5, 0}, {at + 1, w}}, 0, 1);
+    case Touch::kCorner: {
+      TriangleSurface s;
+      s.vertices = {{at, 0, 0.5}, {at + 1, -w, 0.3}, {at + 1, w, 0.3}, {at + 1, 0, 0.8}};
+      s.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};
+      return s;
+    }
+  }
+  return {};
+}
+
+void turn(TriangleSurface& surface, double angle) {
+  for (Point3& p : surface.vertices) {
+    p = {std::cos(angle) * p.x - std::sin(angle) * p.y,
+         std::sin(angle) * p.x + std::cos(angle) * p.y, p.z};
+  }
+}
+
+TriangleSurface prism_with_bodies(std::int32_t n, Touch touch, double phase, Point3 centre) {
+  std::vector<std::pair<double, double>> polygon;
+  const double step = 2 * std::numbers::pi / n;
+  for (std::int32_t i = 0; i < n; ++i) {
+    polygon.emplace_back(kRadius * std::cos(i * step), kRadius * std::sin(i * step));
+  }
+  TriangleSurface whole = prism(polygon, 0, 1);
+  for (std::int32_t i = 0; i < n; ++i) {
+    TriangleSurface one =
+        body(touch, kRadius * std::cos(step / 2), 2 * kRadius * std::sin(step / 2));
+    turn(one, (i + 0.5) * step);
+    append(whole, one);
+  }
+  turn(whole, phase);
+  for (Point3& p : whole.vertices) p = p + centre;
+  round_to_single(whole);
+  return whole;
+}
+
+RandomSurface make_touching_bodies(std::uint64_t seed) {
+  Random random(seed + 0xb0d1e5);
+  const Touch touch = kTouches[random.next() % kTouches.size()];
+  RandomSurface made;
+  made.fold = 2 + static_cast<std::int32_t>(random.next() % 10);
+  if (made.fold == 2) made.fold = 12;  // two sides are no prism
+  const double phase = 2 * std::numbers::pi * random.uniform();
+  Point3 centre;
+  if (random.uniform() < 0.5) {
+    centre = {20 * random.uniform() - 10, 20 * random.uniform() - 10, 20 * random.uniform() - 10};
+  }
+  made.surface = prism_with_bodies(made.fold, touch, phase, centre);
+  made.description = std::to_string(made.fold) + " bodies that touch a prism, way " +
+                     std::to_string(static_cast<int>(touch));
+  const IndexedSurface indexed{
+      made.surface.vertices, {made.surface.triangles.begin(), made.surface.triangles.end()}, {}};
+  made.volume = enclosed_volume(indexed, centre);
+  made.area = surface_area(indexed);
+  const std::int64_t solids = is_one_solid(touch) ? 1 : made.fold + 1;
+  made.boundary = BoundaryTopology{solids, 2 * solids};
+  return made;
+}
+
+}  // namespace symcell::test

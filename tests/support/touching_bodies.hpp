@@ -1,0 +1,43 @@
+// Bodies that touch: prisms with a body at each side, in single precision as STL files have them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/model/triangle_surface.hpp"
+#include "tests/support/random_surface.hpp"
+
+namespace symcell::test {
+
+enum class Touch : std::uint8_t {
+  kFace,       // a face within a side of the prism
+  kFlush,      // a face as high as the side
+  kWhole,      // a face that is the side
+  kHanging,    // a face half beside the side
+  kEdge,       // an edge within the side
+  kEdgeFlush,  // an edge as high as the side
+  kCorner,
+};
+inline constexpr std::array kTouches = {Touch::kFace,    Touch::kFlush, Touch::kWhole,
+                                        Touch::kHanging, Touch::kEdge,  Touch::kEdgeFlush,
+                                        Touch::kCorner};
+
+// Whether bodies that touch so become one solid; else they stay apart.
+[[nodiscard]] bool is_one_solid(Touch touch);
+
+// A body beyond the plane x = `at` that touches it, on the side of a prism of height 1 that is `width` wide.
+[[nodiscard]] TriangleSurface body(Touch touch, double at, double width);
+
+// About the z axis, by radians.
+void turn(TriangleSurface& surface, double angle);
+
+// A prism of n sides with a body at each, turned by `phase` radians and moved to `centre`.
+[[nodiscard]] TriangleSurface prism_with_bodies(std::int32_t n,
+                                                Touch touch,
+                                                double phase,
+                                                Point3 centre);
+
+// One of these.
+[[nodiscard]] RandomSurface make_touching_bodies(std::uint64_t seed);
+
+}  // namespace symcell::test
