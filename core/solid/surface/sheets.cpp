@@ -15,11 +15,7 @@ namespace {
 // Which triangles at an edge belong together, and material in between.
 class Pairing {
  public:
-  // kApart: material and empty space take turns round every edge. kOverlapping: bodies may overlap there
-  // by rounding; what material began first ends first.
-  enum class Bodies : std::uint8_t { kApart, kOverlapping };
-
-  Pairing(const IndexedSurface& surface, Bodies bodies) : surface_(surface), bodies_(bodies) {}
+  explicit Pairing(const IndexedSurface& surface) : surface_(surface) {}
 
   // Calls join(use, use) for each two, and branches(uses) before at edges with more than two.
   template <class Join, class Branches>
@@ -87,34 +83,33 @@ class Pairing {
     }
     std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(start % ring.size()),
                 ring.end());
-    if (depth != 0) return disordered(ring, 0);
+    if (depth != 0) return unbalanced(ring);
+    // What bodies overlap by is rounding: material that began first ends first.
     std::vector<EdgeUse> begun;
     std::size_t ended = 0;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      if (!ring[i].forward) {
-        begun.push_back(ring[i]);
-        if (bodies_ == Bodies::kApart && begun.size() > ended + 1) return disordered(ring, i);
+    for (const EdgeUse& use : ring) {
+      if (use.forward) {
+        join(begun[ended++], use);
       } else {
-        join(begun[ended++], ring[i]);
+        begun.push_back(use);
       }
     }
     return {};
   }
 
-  [[nodiscard]] Failure disordered(const std::vector<EdgeUse>& ring, std::size_t i) const {
-    const std::int32_t a = surface_.source[ring[(i + ring.size() - 1) % ring.size()].triangle],
-                       b = surface_.source[ring[i].triangle];
+  [[nodiscard]] Failure unbalanced(const std::vector<EdgeUse>& ring) const {
+    const std::int32_t a = surface_.source[ring[0].triangle],
+                       b = surface_.source[ring[1 % ring.size()].triangle];
     return fail(ErrorCode::kNotWatertight,
-                "the " + std::to_string(ring.size()) + " triangles at the edge from " +
+                "of the triangles at the edge from " +
                     describe_point(surface_.points[ring.front().low]) + " to " +
                     describe_point(surface_.points[ring.front().high]) + ", such as " +
                     std::to_string(a) + " and " + std::to_string(b) +
-                    ", do not have material and empty space between them by turns",
+                    ", not as many have material on one side as on the other",
                 {a, b});
   }
 
   const IndexedSurface& surface_;
-  Bodies bodies_;
 };
 
 // Corners of triangles at one point that hang together over edges.
@@ -164,12 +159,11 @@ class Splitter {
 
   Result<Touching> run(double gap) {
     std::vector<std::int32_t> ends;
-    SYMCELL_TRY(Pairing(surface_, Pairing::Bodies::kApart)
-                    .run([&](const EdgeUse& a, const EdgeUse& b) { fans_.join(a, b); },
-                         [&](const EdgeUse& edge) {
-                           ++split_.edges;
-                           ends.insert(ends.end(), {edge.low, edge.high});
-                         }));
+    SYMCELL_TRY(Pairing(surface_).run([&](const EdgeUse& a, const EdgeUse& b) { fans_.join(a, b); },
+                                      [&](const EdgeUse& edge) {
+                                        ++split_.edges;
+                                        ends.insert(ends.end(), {edge.low, edge.high});
+                                      }));
     const std::vector<std::int32_t> touched = fans_.pinched();
     std::sort(ends.begin(), ends.end());
     split_.corners =
@@ -267,10 +261,9 @@ Result<Touching> split_sheets(IndexedSurface& surface, double gap) {
 
 Result<std::vector<std::int32_t>> bodies_of(const IndexedSurface& surface) {
   UnionFind bodies(surface.triangles.size());
-  SYMCELL_TRY(
-      Pairing(surface, Pairing::Bodies::kOverlapping)
-          .run([&](const EdgeUse& a, const EdgeUse& b) { bodies.join(a.triangle, b.triangle); },
-               [](const EdgeUse&) {}));
+  SYMCELL_TRY(Pairing(surface).run(
+      [&](const EdgeUse& a, const EdgeUse& b) { bodies.join(a.triangle, b.triangle); },
+      [](const EdgeUse&) {}));
   std::vector<std::int32_t> result(surface.triangles.size());
   for (std::size_t t = 0; t < result.size(); ++t) {
     result[t] = bodies.root(static_cast<std::int32_t>(t));

@@ -24,13 +24,13 @@ struct Touching {
 // their angles round the edge, stay together, and each copy moves by `gap` into its own material, so that
 // the sheets no longer touch. Returns what was split.
 // Requires: outside in front of every triangle.
-// Errors: kNotWatertight if material and empty space do not take turns round an edge.
+// Errors: kNotWatertight if at an edge material does not begin as often as it ends.
 [[nodiscard]] Result<Touching> split_sheets(IndexedSurface& surface, double gap);
 
 // Per triangle the body that it bounds, by one of its triangles: what hangs together over edges where, at
 // those with four and more triangles, faces that have material between them stay together. Faces of two
 // bodies may lie on each other.
-// Requires and errors: as split_sheets(); kNotWatertight at edges with an odd number of triangles, too.
+// Requires and errors: as split_sheets().
 [[nodiscard]] Result<std::vector<std::int32_t>> bodies_of(const IndexedSurface& surface);
 
 }  // namespace symcell::solid
