@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -251,6 +252,15 @@ std::int32_t int_of(const Json& json) {
   return json.get<std::int32_t>();
 }
 
+// A key of "marker_names".  Throws where it is no integer.
+std::int32_t marker_of(const std::string& key) {
+  std::int32_t marker = 0;
+  const char* end = key.data() + key.size();
+  const auto [read, error] = std::from_chars(key.data(), end, marker);
+  if (error != std::errc() || read != end) throw std::out_of_range("no integer of 32 bits");
+  return marker;
+}
+
 // Throws where it is no list of them.
 std::vector<std::int32_t> ints_of(const Json& json) {
   if (!json.is_array()) throw std::out_of_range("no list of integers");
@@ -309,7 +319,7 @@ Result<LooseCell> loose_from_json(const Json& json) {
   mesh.markers = ints_of(json.at("markers"));
   const Json names = json.value("marker_names", Json::object());
   for (const auto& [marker, name] : names.items()) {
-    cell.marker_names.push_back({std::stoi(marker), on_one_line(name.get<std::string>())});
+    cell.marker_names.push_back({marker_of(marker), on_one_line(name.get<std::string>())});
   }
   cell.has_boundary = true;
   for (const Json& facet : json.at("boundary")) {

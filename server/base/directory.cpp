@@ -103,10 +103,13 @@ void Directory::write_file(const std::string& name, std::string_view text) const
   remove_file(part);
   bool created = false;
   const int file = open_or_create_file(part, created);
-  const ssize_t written = ::write(file, text.data(), text.size());
-  const bool whole =
-      written == static_cast<ssize_t>(text.size()) && ::fsync(file) == 0 && ::close(file) == 0;
-  if (!whole) throw_errno("cannot write", path_ / part);
+  const bool written =
+      ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+      ::fsync(file) == 0;
+  const int why = errno;
+  const bool closed = ::close(file) == 0;
+  if (!written) errno = why;  // what close() says of it is no matter
+  if (!written || !closed) throw_errno("cannot write", path_ / part);
   move(part, *this, name);
   sync();
 }

@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
+#include <string_view>
 
 namespace symcell::server {
 namespace {
@@ -25,7 +27,8 @@ void describe(const sockaddr_storage& address, socklen_t length, std::string& ip
     return;
   }
   ip = host.data();
-  port = std::atoi(service.data());
+  const std::string_view number = service.data();
+  std::from_chars(number.data(), number.data() + number.size(), port);
 }
 
 // 1: an event; 0: time is up; -1: error.

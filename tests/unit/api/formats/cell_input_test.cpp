@@ -145,6 +145,7 @@ TEST(CellInput, CellsWhoseCopiesDoNotFitAreRefused) {
   refused("/dimension", 2147483647, "dimension");
   refused("/regions", 1, "another type");
   refused("/regions", Json({{"a", 1}}), "another type");
+  refused("/marker_names", {{"12x", "bore"}}, "another type");
   refused("/axis/direction", {0, 0, 0}, "axis");
   refused("/axis/direction", {0, 1, 0}, "cell.pairs");
   refused("/nodes/0/0", 1e308, "coordinate");
