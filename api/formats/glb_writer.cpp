@@ -132,8 +132,7 @@ class GlbWriter {
   void find_shapes() {
     solid() ? find_surface() : find_triangles();
     std::ranges::sort(edges_);
-    const auto repeated = std::ranges::unique(edges_);
-    edges_.erase(repeated.begin(), repeated.end());
+    edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
   }
 
   void find_surface() {
