@@ -70,7 +70,7 @@ TEST(MeshSurfaceProperty, TabsAndPocketsKeepAllLaws) {
 
 // However their corners were rounded: one solid where faces touch, several where edges or corners do.
 TEST(MeshSurfaceProperty, BodiesThatTouchKeepAllLaws) {
-  const SeedRange seeds = property_seeds(30);
+  const SeedRange seeds = property_seeds(15);
   for (std::uint64_t seed = seeds.begin; seed < seeds.end; ++seed) {
     const SurfaceCase c = make_surface_case(seed, test::make_touching_bodies(seed));
     const auto outcome = mesh(c);

@@ -36,6 +36,57 @@ TriangleSurface prism(const std::vector<std::pair<double, double>>& polygon,
   return s;
 }
 
+std::vector<std::pair<double, double>> regular(std::int32_t n, double radius, double turn = 0) {
+  std::vector<std::pair<double, double>> polygon;
+  for (std::int32_t i = 0; i < n; ++i) {
+    const double angle = turn + 2 * std::numbers::pi * i / n;
+    polygon.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  return polygon;
+}
+
+TriangleSurface parts_of(std::int32_t n, Assembly kind) {
+  TriangleSurface whole;
+  const auto ring = [&](double outer, double inner) {
+    append(whole, ring_surface(n, outer, inner, 1));
+  };
+  const auto disc = [&](double radius, double low, double high) {
+    append(whole, prism(regular(n, radius), low, high));
+  };
+  switch (kind) {
+    case Assembly::kPin:
+      ring(kRadius, 1);
+      disc(1, -0.5, 1.5);
+      break;
+    case Assembly::kFlushPin:
+      ring(kRadius, 1);
+      disc(1, 0, 1);
+      break;
+    case Assembly::kRings:
+      ring(kRadius, 2);
+      ring(2, 1);
+      break;
+    case Assembly::kStack:
+      disc(2, 0, 1);
+      disc(2, 1, 1.7);
+      disc(2, 1.7, 3);
+      break;
+    case Assembly::kTeeth: {
+      const double half = std::numbers::pi / (2 * n);
+      append(whole, prism(regular(2 * n, 2, half), 0, 1));
+      const double at = 2 * std::cos(half), w = 2 * std::sin(half);
+      for (std::int32_t i = 0; i < n; ++i) {
+        TriangleSurface tooth =
+            prism({{at, -w}, {at + 0.5, -w / 2}, {at + 0.5, w / 2}, {at, w}}, 0, 1);
+        turn(tooth, 2 * std::numbers::pi * i / n);
+        append(whole, tooth);
+      }
+      break;
+    }
+  }
+  return whole;
+}
+
 // As a file in single precision has it.  Volatile: GCC 12 leaves the rounding out of the last turns of the
 // loop below when it unrolls it.
 double rounded(double x) {
@@ -81,12 +132,8 @@ void turn(TriangleSurface& surface, double angle) {
 }
 
 TriangleSurface prism_with_bodies(std::int32_t n, Touch touch, double phase, Point3 centre) {
-  std::vector<std::pair<double, double>> polygon;
   const double step = 2 * std::numbers::pi / n;
-  for (std::int32_t i = 0; i < n; ++i) {
-    polygon.emplace_back(kRadius * std::cos(i * step), kRadius * std::sin(i * step));
-  }
-  TriangleSurface whole = prism(polygon, 0, 1);
+  TriangleSurface whole = prism(regular(n, kRadius), 0, 1);
   for (std::int32_t i = 0; i < n; ++i) {
     TriangleSurface one =
         body(touch, kRadius * std::cos(step / 2), 2 * kRadius * std::sin(step / 2));
@@ -99,26 +146,45 @@ TriangleSurface prism_with_bodies(std::int32_t n, Touch touch, double phase, Poi
   return whole;
 }
 
+TriangleSurface assembled(std::int32_t n, Assembly kind, Point3 turns, Point3 centre) {
+  TriangleSurface whole = parts_of(n, kind);
+  for (const double angle : {turns.x, turns.y, turns.z}) {
+    turn(whole, angle);
+    for (Point3& p : whole.vertices) p = {p.y, p.z, p.x};
+  }
+  for (Point3& p : whole.vertices) p = p + centre;
+  round_to_single(whole);
+  return whole;
+}
+
 RandomSurface make_touching_bodies(std::uint64_t seed) {
   Random random(seed + 0xb0d1e5);
-  const Touch touch = kTouches[random.next() % kTouches.size()];
   RandomSurface made;
-  made.fold = 2 + static_cast<std::int32_t>(random.next() % 10);
-  if (made.fold == 2) made.fold = 12;  // two sides are no prism
-  const double phase = 2 * std::numbers::pi * random.uniform();
+  made.fold = 3 + static_cast<std::int32_t>(random.next() % 10);
+  const auto angle = [&] { return 2 * std::numbers::pi * random.uniform(); };
   Point3 centre;
   if (random.uniform() < 0.5) {
     centre = {20 * random.uniform() - 10, 20 * random.uniform() - 10, 20 * random.uniform() - 10};
   }
-  made.surface = prism_with_bodies(made.fold, touch, phase, centre);
-  made.description = std::to_string(made.fold) + " bodies that touch a prism, way " +
-                     std::to_string(static_cast<int>(touch));
+  std::int64_t solids = 1, holes = 0;
+  if (random.uniform() < 0.4) {
+    const Assembly kind = kAssemblies[random.next() % kAssemblies.size()];
+    holes = kind == Assembly::kRings ? 1 : 0;
+    const Point3 turns{angle(), angle(), angle()};
+    made.surface = assembled(made.fold, kind, turns, centre);
+    made.description = "assembly of way " + std::to_string(static_cast<int>(kind));
+  } else {
+    const Touch touch = kTouches[random.next() % kTouches.size()];
+    solids = is_one_solid(touch) ? 1 : made.fold + 1;
+    made.surface = prism_with_bodies(made.fold, touch, angle(), centre);
+    made.description = "bodies that touch a prism, way " + std::to_string(static_cast<int>(touch));
+  }
+  made.description += ", fold " + std::to_string(made.fold);
   const IndexedSurface indexed{
       made.surface.vertices, {made.surface.triangles.begin(), made.surface.triangles.end()}, {}};
   made.volume = enclosed_volume(indexed, centre);
   made.area = surface_area(indexed);
-  const std::int64_t solids = is_one_solid(touch) ? 1 : made.fold + 1;
-  made.boundary = BoundaryTopology{solids, 2 * solids};
+  made.boundary = BoundaryTopology{solids, 2 * (solids - holes)};
   return made;
 }
 

@@ -37,7 +37,21 @@ void turn(TriangleSurface& surface, double angle);
                                                 double phase,
                                                 Point3 centre);
 
-// One of these.
+enum class Assembly : std::uint8_t {
+  kPin,       // in a ring, longer than it
+  kFlushPin,  // as long as it
+  kRings,     // in each other
+  kStack,     // of three discs
+  kTeeth,     // on a disc, each as wide as its side
+};
+inline constexpr std::array kAssemblies = {Assembly::kPin, Assembly::kFlushPin, Assembly::kRings,
+                                           Assembly::kStack, Assembly::kTeeth};
+
+// Bodies of n sides that have whole faces in common, cut into triangles otherwise; turned about all axes by
+// what follows of `turns`.
+[[nodiscard]] TriangleSurface assembled(std::int32_t n, Assembly kind, Point3 turns, Point3 centre);
+
+// One of all of these.
 [[nodiscard]] RandomSurface make_touching_bodies(std::uint64_t seed);
 
 }  // namespace symcell::test

@@ -12,10 +12,16 @@
 namespace symcell::solid {
 namespace {
 
+// Material that begins and ends within so few radians is what bodies overlap by, not one of them.
+constexpr double kThinWedge = 1e-3;
+
 // Which triangles at an edge belong together, and material in between.
 class Pairing {
  public:
-  explicit Pairing(const IndexedSurface& surface) : surface_(surface) {}
+  // kSolid: what bounds one solid. kBodies: what bounds bodies that may overlap by rounding.
+  enum class Of : std::uint8_t { kSolid, kBodies };
+
+  Pairing(const IndexedSurface& surface, Of of) : surface_(surface), of_(of) {}
 
   // Calls join(use, use) for each two, and branches(uses) before at edges with more than two.
   template <class Join, class Branches>
@@ -84,17 +90,33 @@ class Pairing {
     std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(start % ring.size()),
                 ring.end());
     if (depth != 0) return unbalanced(ring);
-    // What bodies overlap by is rounding: material that began first ends first.
-    std::vector<EdgeUse> begun;
-    std::size_t ended = 0;
-    for (const EdgeUse& use : ring) {
-      if (use.forward) {
-        join(begun[ended++], use);
-      } else {
-        begun.push_back(use);
-      }
+    std::vector<EdgeUse> begins, ends;
+    for (const EdgeUse& use : ring) (use.forward ? ends : begins).push_back(use);
+    const std::size_t shift = of_ == Of::kBodies ? first_to_end(begins, ends) : 0;
+    for (std::size_t i = 0; i < begins.size(); ++i) {
+      join(begins[i], ends[(i + shift) % ends.size()]);
     }
     return {};
+  }
+
+  // Material that began first ends first. With which of the ends? Where bodies fill all that is round the
+  // edge, and overlap, with the second one.
+  [[nodiscard]] std::size_t first_to_end(const std::vector<EdgeUse>& begins,
+                                         const std::vector<EdgeUse>& ends) const {
+    for (std::size_t shift = 0; shift < begins.size(); ++shift) {
+      bool thin = false;
+      for (std::size_t i = 0; i < begins.size(); ++i) {
+        thin = thin || is_thin(begins[i], ends[(i + shift) % ends.size()]);
+      }
+      if (!thin) return shift;
+    }
+    return 0;
+  }
+
+  [[nodiscard]] bool is_thin(const EdgeUse& a, const EdgeUse& b) const {
+    const Point3 u = surface_.points[a.low], along = surface_.points[a.high] - u;
+    const Point3 p = cross(along, apex(a) - u), q = cross(along, apex(b) - u);
+    return std::atan2(length(cross(p, q)), dot(p, q)) < kThinWedge;
   }
 
   [[nodiscard]] Failure unbalanced(const std::vector<EdgeUse>& ring) const {
@@ -110,6 +132,7 @@ class Pairing {
   }
 
   const IndexedSurface& surface_;
+  Of of_;
 };
 
 // Corners of triangles at one point that hang together over edges.
@@ -159,11 +182,12 @@ class Splitter {
 
   Result<Touching> run(double gap) {
     std::vector<std::int32_t> ends;
-    SYMCELL_TRY(Pairing(surface_).run([&](const EdgeUse& a, const EdgeUse& b) { fans_.join(a, b); },
-                                      [&](const EdgeUse& edge) {
-                                        ++split_.edges;
-                                        ends.insert(ends.end(), {edge.low, edge.high});
-                                      }));
+    SYMCELL_TRY(Pairing(surface_, Pairing::Of::kSolid)
+                    .run([&](const EdgeUse& a, const EdgeUse& b) { fans_.join(a, b); },
+                         [&](const EdgeUse& edge) {
+                           ++split_.edges;
+                           ends.insert(ends.end(), {edge.low, edge.high});
+                         }));
     const std::vector<std::int32_t> touched = fans_.pinched();
     std::sort(ends.begin(), ends.end());
     split_.corners =
@@ -261,9 +285,10 @@ Result<Touching> split_sheets(IndexedSurface& surface, double gap) {
 
 Result<std::vector<std::int32_t>> bodies_of(const IndexedSurface& surface) {
   UnionFind bodies(surface.triangles.size());
-  SYMCELL_TRY(Pairing(surface).run(
-      [&](const EdgeUse& a, const EdgeUse& b) { bodies.join(a.triangle, b.triangle); },
-      [](const EdgeUse&) {}));
+  SYMCELL_TRY(
+      Pairing(surface, Pairing::Of::kBodies)
+          .run([&](const EdgeUse& a, const EdgeUse& b) { bodies.join(a.triangle, b.triangle); },
+               [](const EdgeUse&) {}));
   std::vector<std::int32_t> result(surface.triangles.size());
   for (std::size_t t = 0; t < result.size(); ++t) {
     result[t] = bodies.root(static_cast<std::int32_t>(t));

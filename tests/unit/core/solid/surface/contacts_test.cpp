@@ -64,6 +64,29 @@ TEST(Contacts, OfCopiesAreAllTreatedAlike) {
   }
 }
 
+// Corners in common, and faces cut into triangles by other diagonals: rounding makes them cross.
+TEST(Contacts, OfWholeFacesMakeOneSolid) {
+  Random random(12);
+  for (const test::Assembly kind : test::kAssemblies) {
+    for (std::int32_t n = 3; n <= 15; n += 3) {
+      SCOPED_TRACE("assembly " + std::to_string(static_cast<int>(kind)) +
+                   ", n = " + std::to_string(n));
+      const Point3 turns{6 * random.uniform(), 6 * random.uniform(), 6 * random.uniform()};
+      const TriangleSurface model = test::assembled(n, kind, turns, {1, 2, 3});
+      const CleanSurface clean = cleaned(model);
+      ASSERT_FALSE(clean.problem) << clean.problem->message;
+      EXPECT_EQ(clean.shells, 1);
+      EXPECT_NEAR(clean.volume, volume_of(model), 1e-4 * clean.volume);
+      ExecutionContext context;
+      const auto found = inspect_model(Model(model), {}, context);
+      ASSERT_TRUE(found) << found.error().message;
+      const auto fold = std::get<SolidInspection>(*found).fold;
+      EXPECT_EQ(n % fold == 0 || fold % n == 0, true) << fold;
+      EXPECT_GT(fold, 1);
+    }
+  }
+}
+
 // What touches exactly needs no moving: faces that lie on each other go, to the last digit.
 TEST(Contacts, ThatAreExactStayExact) {
   TriangleSurface surface = box_surface({0, 0, 0}, {2, 2, 1});
