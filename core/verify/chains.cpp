@@ -1,5 +1,8 @@
 // Straight chains of mesh edges, and the elements that hold given points.
 #include <algorithm>
+#include <set>
+#include <tuple>
+#include <vector>
 
 #include "core/geometry/predicates.hpp"
 #include "core/geometry/predicates_3.hpp"
@@ -49,19 +52,42 @@ std::vector<std::int32_t> straight_chain(const MeshData& mesh,
   std::vector<std::int32_t> chain{from};
   if (!(whole > 0)) return from == to ? chain : std::vector<std::int32_t>{};
   const Point3 along = (1 / whole) * (point(to) - start);
-  while (chain.back() != to) {
-    const double here = dot(point(chain.back()) - start, along);
-    std::int32_t step = -1;
-    double nearest = kFar;
-    for (const std::int32_t node : graph.around(chain.back())) {
-      const Point3 d = point(node) - start;
-      const double ahead = dot(d, along) - here;
-      if (length(cross(along, d)) > tolerance || ahead <= 0 || ahead >= nearest) continue;
-      nearest = ahead;
-      step = node;
+  // Where another line runs within the tolerance the next node may be of that one: it leads nowhere, and
+  // the one after is tried.
+  struct Step {
+    double ahead;
+    std::int32_t node;
+  };
+  std::vector<std::vector<Step>> open;  // per node of the chain: where it may go, the nearest last
+  std::set<std::int32_t> met{from};
+  const auto look_from = [&](std::int32_t node) {
+    const double here = dot(point(node) - start, along);
+    std::vector<Step>& steps = open.emplace_back();
+    for (const std::int32_t next : graph.around(node)) {
+      const Point3 d = point(next) - start;
+      const double there = dot(d, along);
+      if (length(cross(along, d)) > tolerance || there <= here || there > whole + 2 * tolerance) {
+        continue;
+      }
+      steps.push_back({there, next});
     }
-    if (step < 0 || here + nearest > whole + 2 * tolerance) return {};
-    chain.push_back(step);
+    std::ranges::sort(steps, [](const Step& x, const Step& y) {
+      return std::tie(x.ahead, x.node) > std::tie(y.ahead, y.node);
+    });
+  };
+  look_from(from);
+  while (chain.back() != to) {
+    if (open.back().empty()) {
+      chain.pop_back();
+      open.pop_back();
+      if (chain.empty()) return {};
+      continue;
+    }
+    const std::int32_t next = open.back().back().node;
+    open.back().pop_back();
+    if (!met.insert(next).second) continue;
+    chain.push_back(next);
+    look_from(next);
   }
   return chain;
 }

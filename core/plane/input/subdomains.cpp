@@ -1,6 +1,8 @@
 #include "core/plane/input/subdomains.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "core/base/index.hpp"
 #include "core/geometry/resolution.hpp"
@@ -20,20 +22,29 @@ Point2 middle_of(const std::vector<Point2>& vertices) {
   return {low.x + 0.5 * (high.x - low.x), low.y + 0.5 * (high.y - low.y)};
 }
 
-// Green's theorem over the half-edges, triangle by triangle with the reference point.
+// Green's theorem over the half-edges, triangle by triangle with a vertex of each face: with one point for all,
+// a far vertex somewhere would cost small faces their digits.
 void measure(const Pslg& pslg, Subdomains& subdomains) {
   const PlanarMap& map = subdomains.map;
+  std::vector<Point2> origin(subdomains.faces.size());
+  std::vector<char> has_origin(subdomains.faces.size(), 0);
   for (std::size_t p = 0; p < map.pieces.size(); ++p) {
-    const Point2 a = pslg.vertices[at(map.pieces[p].a)] - subdomains.reference;
-    const Point2 b = pslg.vertices[at(map.pieces[p].b)] - subdomains.reference;
-    const double area = 0.5 * cross(a, b);
-    const Point2 moment = (area / 3.0) * (a + b);
-    Subdomain& left = subdomains.faces[at(map.face[2 * p])];
-    Subdomain& right = subdomains.faces[at(map.face[2 * p + 1])];
-    left.area += area;
-    left.moment = left.moment + moment;
-    right.area -= area;
-    right.moment = right.moment - moment;
+    const std::int32_t left = map.face[2 * p], right = map.face[2 * p + 1];
+    if (left == right) continue;  // what it adds on one side it takes off on the other
+    const Point2 a = pslg.vertices[at(map.pieces[p].a)], b = pslg.vertices[at(map.pieces[p].b)];
+    for (const auto& [f, sign] : {std::pair{left, 1.0}, {right, -1.0}}) {
+      if (has_origin[at(f)] == 0) origin[at(f)] = a;
+      has_origin[at(f)] = 1;
+      const Point2 u = a - origin[at(f)], v = b - origin[at(f)];
+      const double area = sign * 0.5 * cross(u, v);
+      Subdomain& face = subdomains.faces[at(f)];
+      face.area += area;
+      face.moment = face.moment + (area / 3.0) * (u + v);
+    }
+  }
+  for (std::size_t f = 0; f < subdomains.faces.size(); ++f) {
+    Subdomain& face = subdomains.faces[f];
+    face.moment = face.moment + face.area * (origin[f] - subdomains.reference);
   }
   subdomains.faces[0].area = 0;
   subdomains.faces[0].moment = {};
