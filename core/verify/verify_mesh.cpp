@@ -297,7 +297,7 @@ class Verifier {
     const bool surface = model_ != nullptr && is_surface();
     // A boundary moved by a distance changes what it encloses by that distance times its size.
     const bool within = options_.model_tolerance_rel || by_shape();
-    const double moved = within ? model_tolerance_ : 2 * asymmetry_;
+    const double moved = within ? model_tolerance_ : std::max(2 * asymmetry_, rounding_);
     const double allowed = (surface ? kSurfaceMeasureRel : kExactMeasureRel) * std::abs(*wanted) +
                            moved * examined_.facts.boundary_size;
     checks_.add(plane() ? "model.area" : "model.volume", std::abs(found - *wanted) <= allowed,
