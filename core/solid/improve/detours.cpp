@@ -115,7 +115,9 @@ bool Improver::detour(TetId t) {
       continue;
     }
     touched_.assign(surgery_.touched().begin(), surgery_.touched().end());
+    trying_ = true;
     const double worst = mend_detour(detour_goal_);
+    trying_ = false;
     const bool will_do = std::all_of(touched_.begin(), touched_.end(), [&](TetId u) {
       return surgery_.shape(u) >= least && size_excess2(u) <= size_before;
     });

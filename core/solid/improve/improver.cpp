@@ -51,13 +51,28 @@ bool Improver::improve(TetId t, Means means) {
   }
   if (means == Means::kFlips) return false;
   for (std::uint32_t i = 0; i < 4; ++i) {
-    if (surgery_.smooth(mesh_.tet(t).v[i])) return true;
+    if (smooth(mesh_.tet(t).v[i])) return true;
   }
   const double floor = surgery_.shape(t) * (1 + kGain);
   for (std::uint32_t i = 0; i < 4; ++i) {
     for (std::uint32_t j = 0; j < 4; ++j) {
       if (i != j && surgery_.collapse(t, i, j, floor)) return true;
     }
+  }
+  return false;
+}
+
+// What a vertex can be moved to depends on its star alone, and some twenty tetrahedra ask for it.
+bool Improver::smooth(VertexId v) {
+  const auto i = static_cast<std::size_t>(v);
+  const auto when = [i](const std::vector<std::uint64_t>& of) {
+    return i < of.size() ? of[i] : std::uint64_t{0};
+  };
+  if (!trying_ && when(changed_) < when(settled_)) return false;
+  if (surgery_.smooth(v)) return true;
+  if (!trying_) {
+    settled_.resize(std::max(settled_.size(), mesh_.vertex_slots()), 0);
+    settled_[i] = steps_;
   }
   return false;
 }
@@ -141,6 +156,7 @@ bool Improver::is_hopeless(TetId t) const {
 
 Result<void> Improver::mend(double goal, int passes) {
   given_up_.clear();
+  settled_.clear();
   for (int pass = 0; pass < passes; ++pass) {
     const std::uint64_t before = surgery_.edits();
     SYMCELL_TRY(work_on_worst(goal, Means::kAll));

@@ -66,6 +66,7 @@ class Improver {
   [[nodiscard]] static bool must_be_mended(double key) { return key <= -kMustBeKept; }
   [[nodiscard]] bool improve(TetId t, Means means);
   [[nodiscard]] bool change(TetId t, Means means);
+  [[nodiscard]] bool smooth(VertexId v);
   [[nodiscard]] bool detour(TetId t);
   [[nodiscard]] bool open_detour(TetId t, std::size_t way);
   [[nodiscard]] bool is_small() const;
@@ -81,6 +82,8 @@ class Improver {
   std::uint64_t steps_ = 0;
   std::vector<GivenUp> given_up_;
   std::vector<std::uint64_t> changed_;
+  std::vector<std::uint64_t> settled_;  // when a vertex was last tried to be moved, in vain
+  bool trying_ = false;                 // what is done may be undone, and is not in changed_
   std::vector<std::uint32_t> changes_;  // per vertex, of tetrahedra at it, in this round
   std::vector<TetId> touched_;          // by the last change
   double detour_goal_ = -1;

@@ -76,7 +76,7 @@ bool Surgery::smooth(VertexId v) {
   Point3 at = x;
   const auto attempt = [&](Point3 p) {
     p = constrain(v, p);
-    const Worth limits{is_broken(best) ? 0 : best.shape, std::max(1.0, best.excess),
+    const Worth limits{floor_of(best), std::max(1.0, best.excess),
                        best.excess > 1 ? kFar : std::max(1.0, best.exempt)};
     const Worth w = star_worth_at(p, limits);
     if (w.shape <= limits.shape || !better(w, best)) return false;

@@ -12,8 +12,6 @@ namespace {
 constexpr std::size_t kMaxRing = 8;
 // What a new vertex must better the worst shape by, to be worth its tetrahedra.
 constexpr double kInsertionGain = 1.15;
-// While a bound is broken, shapes may get worse, but not below this sine.
-constexpr double kPoorShape = 0.3;
 
 }  // namespace
 

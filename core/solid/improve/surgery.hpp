@@ -131,10 +131,15 @@ class Surgery {
   [[nodiscard]] double lenient_excess() const {
     return criteria_.min_edge() > 0 ? kTooShort : kFar;
   }
+  // While a bound is broken, shapes may get worse, but not below this sine.
+  static constexpr double kPoorShape = 0.3;
+  // That what betters a star must exceed in any case.
+  [[nodiscard]] static double floor_of(const Worth& before) {
+    return is_broken(before) ? std::clamp(before.shape, 0.0, kPoorShape) : before.shape;
+  }
   // That edge and face removals must exceed.
   [[nodiscard]] double least_shape(const Worth& before) const {
-    if (lenient_) return kOpeningShape;
-    return is_broken(before) ? 0 : before.shape;
+    return lenient_ ? kOpeningShape : floor_of(before);
   }
   [[nodiscard]] static bool is_broken(const Worth& w) { return w.excess > 1 || w.exempt > 1; }
   [[nodiscard]] bool apply(std::span<const TetCopy> removed,
