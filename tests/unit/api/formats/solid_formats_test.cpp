@@ -209,7 +209,7 @@ TEST(Stl, AsciiKeepsAllDigits) {
     EXPECT_TRUE(nodes.contains(p));
     ++vertices;
   }
-  EXPECT_EQ(vertices, 3 * 3 * sample.cell.facet_count());
+  EXPECT_EQ(vertices, std::size_t{9} * sample.cell.facet_count());
 }
 
 // What we write is a model that we would take.
