@@ -11,11 +11,7 @@
 #include "tests/support/surface_builders.hpp"
 
 namespace symcell::test {
-namespace {
 
-constexpr double kRadius = 3;
-
-// A prism over a convex polygon given counter-clockwise.
 TriangleSurface prism(const std::vector<std::pair<double, double>>& polygon,
                       double low,
                       double high) {
@@ -35,6 +31,10 @@ TriangleSurface prism(const std::vector<std::pair<double, double>>& polygon,
   }
   return s;
 }
+
+namespace {
+
+constexpr double kRadius = 3;
 
 std::vector<std::pair<double, double>> regular(std::int32_t n, double radius, double turn = 0) {
   std::vector<std::pair<double, double>> polygon;

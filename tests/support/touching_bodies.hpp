@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "core/model/triangle_surface.hpp"
 #include "tests/support/random_surface.hpp"
@@ -21,6 +23,11 @@ enum class Touch : std::uint8_t {
 inline constexpr std::array kTouches = {Touch::kFace,    Touch::kFlush, Touch::kWhole,
                                         Touch::kHanging, Touch::kEdge,  Touch::kEdgeFlush,
                                         Touch::kCorner};
+
+// Over a convex polygon given counter-clockwise.
+[[nodiscard]] TriangleSurface prism(const std::vector<std::pair<double, double>>& polygon,
+                                    double low,
+                                    double high);
 
 // Whether bodies that touch so become one solid; else they stay apart.
 [[nodiscard]] bool is_one_solid(Touch touch);

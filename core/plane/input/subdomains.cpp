@@ -6,6 +6,7 @@
 
 #include "core/base/index.hpp"
 #include "core/geometry/resolution.hpp"
+#include "core/model/mesh_options.hpp"
 #include "core/plane/input/near_vertices.hpp"
 
 namespace symcell::plane {
@@ -22,19 +23,46 @@ Point2 middle_of(const std::vector<Point2>& vertices) {
   return {low.x + 0.5 * (high.x - low.x), low.y + 0.5 * (high.y - low.y)};
 }
 
-// Green's theorem over the half-edges, triangle by triangle with a vertex of each face: with one point for all,
-// a far vertex somewhere would cost small faces their digits.
+// A face so many times its size away from a point has lost as many of its digits there.
+constexpr double kFar = 1e3;
+
+// Of each face a point to sum about: the reference, or a vertex of its own where that is far away, as where
+// a vertex stands alone a long way off.
+std::vector<Point2> origins(const Pslg& pslg, const Subdomains& subdomains) {
+  const PlanarMap& map = subdomains.map;
+  struct Box {
+    Point2 low{kInfinity, kInfinity}, high{-kInfinity, -kInfinity};
+  };
+  std::vector<Box> boxes(subdomains.faces.size());
+  for (std::size_t p = 0; p < map.pieces.size(); ++p) {
+    const std::int32_t left = map.face[2 * p], right = map.face[2 * p + 1];
+    if (left == right) continue;
+    for (const std::int32_t f : {left, right}) {
+      Box& box = boxes[at(f)];
+      for (const std::int32_t v : {map.pieces[p].a, map.pieces[p].b}) {
+        const Point2 q = pslg.vertices[at(v)];
+        box.low = {std::min(box.low.x, q.x), std::min(box.low.y, q.y)};
+        box.high = {std::max(box.high.x, q.x), std::max(box.high.y, q.y)};
+      }
+    }
+  }
+  std::vector<Point2> result;
+  for (const Box& box : boxes) {
+    const bool far = length(box.low - subdomains.reference) > kFar * length(box.high - box.low);
+    result.push_back(far ? box.low : subdomains.reference);
+  }
+  return result;
+}
+
+// Green's theorem over the half-edges, triangle by triangle with the face's origin.
 void measure(const Pslg& pslg, Subdomains& subdomains) {
   const PlanarMap& map = subdomains.map;
-  std::vector<Point2> origin(subdomains.faces.size());
-  std::vector<char> has_origin(subdomains.faces.size(), 0);
+  const std::vector<Point2> origin = origins(pslg, subdomains);
   for (std::size_t p = 0; p < map.pieces.size(); ++p) {
     const std::int32_t left = map.face[2 * p], right = map.face[2 * p + 1];
     if (left == right) continue;  // what it adds on one side it takes off on the other
     const Point2 a = pslg.vertices[at(map.pieces[p].a)], b = pslg.vertices[at(map.pieces[p].b)];
     for (const auto& [f, sign] : {std::pair{left, 1.0}, {right, -1.0}}) {
-      if (has_origin[at(f)] == 0) origin[at(f)] = a;
-      has_origin[at(f)] = 1;
       const Point2 u = a - origin[at(f)], v = b - origin[at(f)];
       const double area = sign * 0.5 * cross(u, v);
       Subdomain& face = subdomains.faces[at(f)];

@@ -1,6 +1,8 @@
 // Moves of single vertices.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "core/solid/improve/surgery.hpp"
 
@@ -24,14 +26,10 @@ Point3 Surgery::constrain(VertexId v, Point3 p) const {
   return mesh_.on_axis(v) ? Point3{0, 0, x.z + along * direction_.z} : x + along * direction_;
 }
 
-bool Surgery::smooth(VertexId v) {
+// What holds the vertex: the line of its subsegments, the plane of its subfacets. Moves keep to the line or
+// plane exactly as far as doubles allow, and the ends of its segment are its neighbours'.
+std::optional<double> Surgery::find_hold(VertexId v) {
   const VertexKind kind = mesh_.kind(v);
-  if (kind == VertexKind::kInput || kind == VertexKind::kDeleted) return false;
-  if (!load_star(v)) return false;
-  const Point3 x = mesh_.point(v);
-  // What holds the vertex: the line of its subsegments, the plane of its subfacets. Moves keep to
-  // the line or plane exactly as far as doubles allow, and the ends of its segment are its
-  // neighbours'.
   direction_ = {0, 0, 0};
   Point3 normal;
   double reach2 = std::numeric_limits<double>::infinity();
@@ -42,7 +40,7 @@ bool Surgery::smooth(VertexId v) {
         if (j == i) continue;
         reach2 = std::min(reach2, squared_distance(s.p[i], s.p[j]));
         if (kind == VertexKind::kSegment && mesh_.segment_of(s.c[i], s.c[j]) != kNoSegment) {
-          const Point3 d = s.p[j] - x;
+          const Point3 d = s.p[j] - mesh_.point(v);
           if (dot(d, d) > dot(direction_, direction_)) direction_ = d;
         }
       }
@@ -67,10 +65,19 @@ bool Surgery::smooth(VertexId v) {
   }
   if (kind != VertexKind::kFree) {
     const double l = length(direction_);
-    if (!(l > 0)) return false;
+    if (!(l > 0)) return std::nullopt;
     direction_ = (1 / l) * direction_;
   }
+  return std::sqrt(reach2);
+}
 
+bool Surgery::smooth(VertexId v) {
+  const VertexKind kind = mesh_.kind(v);
+  if (kind == VertexKind::kInput || kind == VertexKind::kDeleted) return false;
+  if (!load_star(v)) return false;
+  const Point3 x = mesh_.point(v);
+  const std::optional<double> reach = find_hold(v);
+  if (!reach) return false;
   const Worth before = star_worth();
   Worth best = before;
   Point3 at = x;
@@ -96,7 +103,6 @@ bool Surgery::smooth(VertexId v) {
     const Point3 mean = (1 / weight) * sum;
     if (!attempt(mean)) static_cast<void>(attempt(0.5 * (x + mean)));
   }
-  const double reach = std::sqrt(reach2);
   const bool search = is_broken(best) || best.shape < kGoodTet;
   // Unit vectors: both ways along the axes, and one out of their planes.
   constexpr std::array<Point3, 7> kWays = {
@@ -104,7 +110,7 @@ bool Surgery::smooth(VertexId v) {
   for (const double step : kSteps) {
     if (!search) break;
     for (const Point3& way : kWays) {
-      static_cast<void>(attempt(at + step * reach * way));
+      static_cast<void>(attempt(at + step * *reach * way));
     }
   }
   if (at == x) return false;

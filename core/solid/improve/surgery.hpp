@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -209,6 +210,9 @@ class Surgery {
   }
 
   // Moves.
+  // Sets direction_, of the vertex whose star is loaded. The shortest edge at it; none: nothing tells the
+  // direction.
+  [[nodiscard]] std::optional<double> find_hold(VertexId v);
   [[nodiscard]] Point3 constrain(VertexId v, Point3 p) const;
 
   Editor& editor_;

@@ -12,6 +12,7 @@
 
 #include "core/geometry/rotation.hpp"
 #include "tests/support/surface_builders.hpp"
+#include "tests/support/touching_bodies.hpp"
 
 namespace symcell {
 namespace {
@@ -52,14 +53,18 @@ TEST(MeshModel, StatisticsOfATubeListTheFolds) {
 // Two cubes that share a corner have fold 3 about their diagonal, and no sector of it has a cut that
 // is closed.
 TEST(MeshModel, TakesADivisorWhereTheFoldHasNoMesh) {
-  TriangleSurface cubes = box_surface({0, 0, 0}, {1, 1, 1});
-  append(cubes, box_surface({1, 1, 1}, {2, 2, 2}));
+  // Cubes that overlap at a corner by so little that no cut about their diagonal is found.
+  const auto cube = [](double low, double high) {
+    return test::prism({{low, low}, {high, low}, {high, high}, {low, high}}, low, high);
+  };
+  TriangleSurface cubes = cube(0, 1);
+  append(cubes, cube(1 - 1e-5, 2 - 1e-5));
   ExecutionContext context;
   MeshOptions options;
   const auto chosen = mesh_model(cubes, options, context);
   ASSERT_TRUE(chosen) << chosen.error().message;
   EXPECT_EQ(chosen->statistics.symmetry.fold, 1);
-  EXPECT_NEAR(chosen->statistics.cell.measure, 2, 1e-12);
+  EXPECT_NEAR(chosen->statistics.cell.measure, 2, 1e-4);
   const auto& warnings = chosen->statistics.warnings;
   EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const Warning& w) {
     return w.code == WarningCode::kFoldNotLargest &&
