@@ -73,6 +73,7 @@ class GlbWriter {
                                                 quaternion_of(cell_.frame));
     if (full_) {
       std::vector<std::size_t> meshes;
+      meshes.reserve(static_cast<std::size_t>(cell_.fold));
       for (std::int32_t s = 0; s < cell_.fold; ++s) {
         meshes.push_back(s == 0 || varied ? add_mesh(s) : meshes.front());
       }
