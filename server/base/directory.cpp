@@ -54,6 +54,7 @@ std::vector<Directory::Entry> Directory::entries() const {
     throw_errno("cannot read the folder", path_);
   }
   std::vector<Entry> entries;
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody else reads this stream.
   while (const dirent* found = ::readdir(stream.get())) {
     const std::string name = found->d_name;
     if (name == "." || name == "..") continue;
