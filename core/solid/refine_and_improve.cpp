@@ -144,7 +144,8 @@ Result<bool> refine_unless_cascading(std::optional<Editor>& editor,
   const QuotientTetrahedralization before = mesh;
   const Work work_before = work;
   SYMCELL_TRY(refine(*editor, criteria, depth, false, context, work));
-  if (static_cast<double>(count_bad(*editor, criteria)) <= most * static_cast<double>(bad)) {
+  if (mesh.tet_count() <= limits.cascade_from ||
+      static_cast<double>(count_bad(*editor, criteria)) <= most * static_cast<double>(bad)) {
     return true;
   }
   mesh = before;
