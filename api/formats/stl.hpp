@@ -15,7 +15,7 @@ namespace symcell {
 // (no triangles at all).
 [[nodiscard]] Result<TriangleSurface> read_stl(std::string_view bytes);
 
-// Whether the size is what a binary STL's count asks for. No text is: its count would be of a file of 25 GB
+// Whether the size is what a binary STL's count asks for. No text is: its count would be of a file of 7 GB
 // and more.
 [[nodiscard]] bool has_size_of_binary_stl(std::string_view bytes);
 

@@ -116,11 +116,13 @@ class Cleaner {
   // Bodies that touch become one solid, or stay apart, at all copies alike; where that cannot be, as they
   // are.
   Result<void> mend_with_contacts() {
-    const CleanSurface as_read = result_;
     auto done = mend();
     if (deepened_.triangles.empty()) return done;
     const auto again = [&](IndexedSurface from) {
-      result_ = as_read;
+      CleanSurface fresh;
+      fresh.box = result_.box;
+      fresh.diameter = result_.diameter;
+      result_ = std::move(fresh);
       surface() = std::move(from);
       turned_shells_ = 0;
       turned_sources_.clear();
@@ -135,7 +137,7 @@ class Cleaner {
     done = again(std::exchange(deepened_, {}));
     if (done ? !result_.problem : is_limit(done.error().code)) return done;
     contact_ = 0;
-    return again(as_read.surface);
+    return again(weld_exactly(input_));
   }
 
   // Where parts of the surface as read meet: whether it is to be mended from the start with bodies that
@@ -147,15 +149,15 @@ class Cleaner {
     const double largest = std::max({std::abs(box.low.x), std::abs(box.low.y), std::abs(box.low.z),
                                      std::abs(box.high.x), std::abs(box.high.y),
                                      std::abs(box.high.z), result_.diameter});
-    contact_ = std::min(kContactRel * largest, kMostContact * tolerance());
-    deepened_ = weld_exactly(input_);
-    auto places = deepen_contacts(deepened_, contact_, context_);
+    const double reach = std::min(kContactRel * largest, kMostContact * tolerance());
+    IndexedSurface deepened = weld_exactly(input_);
+    auto places = deepen_contacts(deepened, reach, context_);
     if (!places) return error_of(places);
+    if (places->empty()) return false;
+    deepened_ = std::move(deepened);
+    contact_ = reach;
     contacts_ = std::move(*places);
-    if (!contacts_.empty()) return true;
-    contact_ = 0;
-    deepened_ = {};
-    return false;
+    return true;
   }
 
   Result<void> mend() {

@@ -9,6 +9,7 @@
 
 #include "core/geometry/triangle_tree.hpp"
 #include "core/solid/surface/sheets.hpp"
+#include "core/solid/surface/weld.hpp"
 
 namespace symcell::solid {
 namespace {
@@ -57,7 +58,7 @@ class Contacts {
 
   Result<std::vector<Point3>> run() {
     auto bodies = bodies_of(surface_);
-    // What is open or inside out has no bodies; others tell of it.
+    // What is open has no bodies; others tell of it.
     if (!bodies) return std::vector<Point3>{};
     body_ = std::move(*bodies);
     if (std::ranges::all_of(body_, [&](std::int32_t b) { return b == body_.front(); })) {
@@ -190,7 +191,11 @@ class Contacts {
         reach_);
     if (!state) return error_of(state);
     if (near.size() > kMostPairs) return false;
-    for (const auto& [s, t] : near) {
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      if (i % kCheckEvery == 0) {
+        SYMCELL_TRY(context_.check());
+      }
+      const auto [s, t] = near[i];
       if (look_at(s, t, false) + look_at(t, s, false) > 0) continue;
       look_at(s, t, true);  // bodies that touch where neither has a corner, such as crossed bars
       look_at(t, s, true);
@@ -226,7 +231,8 @@ class Contacts {
       own_.points[v] = p;
       places.push_back(from);
     }
-    if (!places.empty()) surface_ = std::move(own_);
+    // Corners that stayed are shared again.
+    if (!places.empty()) surface_ = weld_exactly(own_);
     return places;
   }
 

@@ -87,7 +87,8 @@ class Resolver {
   void close_contacts() {
     if (contact_ == 0) return;
     IndexedSurface welded = weld_within(result_.surface, kContactWidth * contact_);
-    if (odd_edges(welded).empty() && same_volume(welded)) result_.surface = std::move(welded);
+    if (welded.triangles.empty() || !odd_edges(welded).empty() || !same_volume(welded)) return;
+    result_.surface = std::move(welded);
   }
 
   // An edge whose ends are each in one sheet only is split in its middle as well.

@@ -30,7 +30,8 @@ struct Touching {
 // Per triangle the body that it bounds, by one of its triangles: what hangs together over edges where, at
 // those with four and more triangles, faces that have material between them stay together. Faces of two
 // bodies may lie on each other.
-// Requires and errors: as split_sheets().
+// Requires: what has two triangles at an edge is one body there, whichever way they look.
+// Errors: as split_sheets().
 [[nodiscard]] Result<std::vector<std::int32_t>> bodies_of(const IndexedSurface& surface);
 
 }  // namespace symcell::solid
