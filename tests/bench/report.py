@@ -45,7 +45,7 @@ def load(path):
     for run in document["benchmarks"]:
         words = run["name"].split("/")
         arguments = dict(re.findall(r"(\w+):(\d+)", run["name"]))
-        key = (words[0], *(int(arguments[k]) for k in ("fold", "full", "plain") if k in arguments))
+        key = (words[0], *(int(arguments[k]) for k in ("decades", "fold", "full", "plain") if k in arguments))
         runs[key] = run
     return document["context"], runs
 
@@ -133,6 +133,21 @@ def restoration(runs):
     table(["what", "n", "triangles", "ns a triangle"], rows)
 
 
+def detection(runs):
+    print(
+        """## Finding the symmetry
+
+A ring of 3,000 vertices with a wavy rim, by the tolerance of symmetry (a share of the model's diameter).
+"""
+    )
+    fewest = runs[("detect", 6)]["real_time"]
+    rows = []
+    for decades in range(6, 0, -1):
+        run = runs[("detect", decades)]
+        rows.append([f"1e-{decades}", milliseconds(run), f"{run['real_time'] / fewest:.1f}"])
+    table(["tolerance", "ms", "times the first"], rows)
+
+
 def whole_model(runs):
     print(
         """## Against a mesher of the whole model
@@ -188,6 +203,7 @@ def main():
     head(context)
     refinement(runs)
     restoration(runs)
+    detection(runs)
     whole_model(runs)
     files(runs)
 

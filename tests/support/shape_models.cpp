@@ -215,6 +215,20 @@ std::vector<Point2> polygon(std::int32_t sides, double radius, double phase, Poi
   return points;
 }
 
+Pslg wavy_ring() {
+  constexpr int kRim = 2000, kBore = 1000, kWaves = 7;
+  std::vector<Point2> rim;
+  for (int i = 0; i < kRim; ++i) {
+    const double angle = kTurn * i / kRim;
+    rim.push_back(polar(1 + 0.05 * std::sin(kWaves * angle), angle));
+  }
+  Pslg pslg;
+  add_loop(pslg, rim, 0);
+  add_loop(pslg, polygon(kBore, 0.5, 0.1, {}), 0);
+  pslg.holes.push_back({0, 0});
+  return pslg;
+}
+
 void add_loop(Pslg& pslg, const std::vector<Point2>& points, std::int32_t marker) {
   const auto first = static_cast<std::int32_t>(pslg.vertices.size());
   const auto count = static_cast<std::int32_t>(points.size());

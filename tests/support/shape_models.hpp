@@ -26,6 +26,9 @@ struct ShapeModel {
                                           double phase,
                                           Point2 centre);
 
+// A ring of radius near 1 whose rim of 2,000 vertices has seven waves, with a bore of 1,000.
+[[nodiscard]] Pslg wavy_ring();
+
 // Adds a closed loop.
 void add_loop(Pslg& pslg, const std::vector<Point2>& points, std::int32_t marker);
 

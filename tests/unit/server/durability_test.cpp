@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <fstream>
+#include <functional>
+#include <semaphore>
 #include <thread>
 
 #include "server/base/identifiers.hpp"
@@ -190,8 +192,10 @@ TEST_F(DurableServiceTest, RetentionRemovesFilesOnceTheirRowsAreGoneForGood) {
   EXPECT_TRUE(std::filesystem::exists(folder));
 }
 
-// Runs one job to its end; returns it.
-Job run_one(JobEngine& engine, const std::filesystem::path& folder) {
+// Runs one job to its end; returns it. Calls `submitted` once the disk has the job.
+Job run_one(JobEngine& engine,
+            const std::filesystem::path& folder,
+            const std::function<void()>& submitted = [] {}) {
   Metrics metrics;
   Logger logger{LogLevel::kOff, LogFormat::kText};
   JobService jobs(folder, {}, engine, metrics, logger);
@@ -200,6 +204,7 @@ Job run_one(JobEngine& engine, const std::filesystem::path& folder) {
   submission.model = jobs.files().incoming();
   symcell::test::write_file(submission.model, square_json());
   const std::string id = jobs.submit(submission).job.id;
+  submitted();
   EXPECT_TRUE(eventually([&] { return is_finished(jobs.find(id)->state); }));
   return *jobs.find(id);
 }
@@ -207,18 +212,24 @@ Job run_one(JobEngine& engine, const std::filesystem::path& folder) {
 class LosingEngine final : public StubEngine {
  public:
   [[nodiscard]] Result<void> run(const EngineJob& job, ExecutionContext& context) override {
+    submitted_.acquire();
     WatchedDisk::refuse(Call::kData, "-wal", 3);
     job.on_lost_worker();
     WatchedDisk::refuse(Call::kData, "", 0);
     return StubEngine::run(job, context);
   }
+  // Submitting waits for the disk beside the run, which may have begun.
+  void submitted() { submitted_.release(); }
+
+ private:
+  std::binary_semaphore submitted_{0};
 };
 
 TEST(DurabilityTest, ALostWorkerIsCountedOnceHoweverOftenTheDiskRefuses) {
   const WatchedDisk disk;
   const symcell::test::TemporaryFolder folder;
   LosingEngine engine;
-  EXPECT_EQ(run_one(engine, folder.path()).lost_workers, 1);
+  EXPECT_EQ(run_one(engine, folder.path(), [&] { engine.submitted(); }).lost_workers, 1);
 }
 
 class LargeEngine final : public StubEngine {
