@@ -48,6 +48,12 @@ class TriangleTree {
   // The same, beginning at `last` as above, which afterwards names the triangle that was found and no other.
   [[nodiscard]] bool within(Point3 p, double reach, std::int32_t& last) const;
 
+  // The corners of the triangle that `last` names.
+  [[nodiscard]] std::array<Point3, 3> corners_at(std::int32_t last) const {
+    const Item& item = items_[static_cast<std::size_t>(last)];
+    return {item.a, item.b, item.c};
+  }
+
   struct Meeting {
     std::int32_t triangle = -1;  // -1: none
     double distance = std::numeric_limits<double>::infinity();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/indexed_surface.hpp"
+#include "core/geometry/surface_distance.hpp"
 #include "core/geometry/triangle_tree.hpp"
 #include "core/geometry/winding.hpp"
 #include "core/verify/against_model.hpp"
@@ -12,6 +13,9 @@
 namespace symcell::internal {
 namespace {
 
+// What is within the tolerance by less than this share of it may be told as beyond, by looking at all of
+// a triangle (DistanceBound): so much more is allowed there.
+constexpr double kSlack = 1 + 1.0 / 32;
 // Samples of the surface: enough to notice a missing feature that is not much smaller than the
 // tolerance in area, few enough to take seconds.
 constexpr double kSamples = 100'000;
@@ -53,17 +57,22 @@ struct Farthest {
   // If not null, points beyond are kept instead of being counted.
   std::vector<Sample>* kept = nullptr;
 
-  void look(const TriangleTree& tree, const Point3& p, const char* what, Point3 normal = {}) {
+  // Whether the point is near.
+  bool look(const TriangleTree& tree, const Point3& p, const char* what, Point3 normal = {}) {
     const auto near = tree.nearest(p, tolerance);
     if (near.triangle >= 0) {
       distance = std::max(distance, std::sqrt(near.squared));
-      return;
+      return true;
     }
+    keep(p, what, normal);
+    return false;
+  }
+  void keep(const Point3& p, const char* what, Point3 normal) {
     if (kept != nullptr) {
       kept->push_back({p, normal});
-      return;
+    } else {
+      count(p, what);
     }
-    count(p, what);
   }
   void count(const Point3& p, const char* what) {
     if (beyond++ > 0) return;
@@ -101,32 +110,42 @@ class SurfaceChecker {
     const TriangleTree boundary(outside.points, faces);
 
     Farthest from_mesh{tolerance_, 0, 0, {}, nullptr};
+    DistanceBound of_faces(surface, kSlack * tolerance_);
     std::vector<char> seen(full_.mesh.points.size(), 0);
     for (const Triangle& face : faces) {
-      Point3 sum;
-      for (const std::int32_t node : face) {
-        const auto at = static_cast<std::size_t>(node);
-        sum = sum + full_.mesh.points[at];
-        if (seen[at]++ == 0) from_mesh.look(surface, full_.mesh.points[at], "the node");
+      Corners p;
+      bool near = true;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto at = static_cast<std::size_t>(face[i]);
+        p[i] = full_.mesh.points[at];
+        if (seen[at]++ == 0) near = from_mesh.look(surface, p[i], "the node") && near;
       }
-      from_mesh.look(surface, (1.0 / 3) * sum, "the middle of a face");
+      near = from_mesh.look(surface, (1.0 / 3) * (p[0] + p[1] + p[2]), "the middle of a face") && near;
+      if (!near) continue;
+      if (const auto beyond = of_faces.beyond(p)) from_mesh.count(*beyond, "a face");
     }
     checks_.add("model.on_surface", from_mesh.beyond == 0, from_mesh.text());
 
     std::vector<Sample> far;
     Farthest from_surface{tolerance_, 0, 0, {}, &far};
+    DistanceBound of_surface(boundary, kSlack * tolerance_);
     double area = 0;
     for (const Triangle& t : model_.triangles) area += area_of(corners(t));
     for (const Triangle& t : model_.triangles) {
       const Corners p = corners(t);
       const Point3 n = cross(p[1] - p[0], p[2] - p[0]);
       const Point3 normal = length(n) > 0 ? (1 / length(n)) * n : Point3{};
-      for (const Point3& corner : p) from_surface.look(boundary, corner, "the surface", normal);
+      bool near = true;
+      const auto look = [&](const Point3& sample) {
+        near = from_surface.look(boundary, sample, "the surface", normal) && near;
+      };
+      for (const Point3& corner : p) look(corner);
       const double share = area > 0 ? kSamples * area_of(p) / area : 1;
-      each_sample(p, std::min(static_cast<std::size_t>(share) + 1, kSamplesATriangle),
-                  [&](const Point3& sample) {
-                    from_surface.look(boundary, sample, "the surface", normal);
-                  });
+      each_sample(p, std::min(static_cast<std::size_t>(share) + 1, kSamplesATriangle), look);
+      if (!near) continue;
+      if (const auto beyond = of_surface.beyond(p)) {
+        from_surface.keep(*beyond, "the surface", normal);
+      }
     }
     // Walls between bodies that overlap lie within the solid, and walls of no thickness, where a face lies
     // on another that looks the other way, bound nothing. A fair share of them is looked at.

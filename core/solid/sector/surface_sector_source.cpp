@@ -228,7 +228,6 @@ SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean, Symmetry symmetry, 
   noise_ = move_to_frame(full_, symmetry_);
   topology_ = topology_of(full_);
   tree_ = TriangleTree(full_.points, full_.triangles);
-  samples_ = samples_of(full_);
   choose_candidates();
 }
 
@@ -407,38 +406,43 @@ Result<void> SurfaceSectorSource::check_shape(const QuotientSurface& surface,
 // Over the whole model: every copy near the input, all of the input near a copy.
 Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
                                                   ExecutionContext& context) const {
-  const RotationTable rotations(symmetry_.fold);
+  const auto is_near = [](DistanceBound& bound, const IndexedSurface& surface) {
+    return std::all_of(
+        surface.triangles.begin(), surface.triangles.end(), [&](const Triangle& t) {
+          return !bound.beyond({surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]});
+        });
+  };
   const auto failure = fail(ErrorCode::kInternal, "the sector is too far from the surface");
-  const std::vector<Point3> samples = samples_of(sector);
+  const RotationTable rotations(symmetry_.fold);
+  DistanceBound from_input(tree_, allowed_);
   IndexedSurface all;
-  std::int32_t last = -1;
   for (std::int32_t k = 0; k < symmetry_.fold; ++k) {
     SYMCELL_TRY(context.check());
-    for (const Point3& p : samples) {
-      if (!tree_.within(rotations.rotate(p, k), allowed_, last)) return failure;
-    }
+    IndexedSurface copy;
+    copy.triangles = sector.triangles;
+    for (const Point3& p : sector.points) copy.points.push_back(rotations.rotate(p, k));
+    if (!is_near(from_input, copy)) return failure;
     const auto first = static_cast<std::int32_t>(all.points.size());
-    for (const Point3& p : sector.points) all.points.push_back(rotations.rotate(p, k));
+    all.points.insert(all.points.end(), copy.points.begin(), copy.points.end());
     for (const Triangle& t : sector.triangles) {
       all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     }
   }
   SYMCELL_TRY(context.check());
   const TriangleTree copies(all.points, all.triangles);
-  last = -1;
-  const bool near = std::all_of(samples_.begin(), samples_.end(),
-                                [&](const Point3& p) { return copies.within(p, allowed_, last); });
-  return near ? Result<void>{} : failure;
+  DistanceBound from_copies(copies, allowed_);
+  return is_near(from_copies, full_) ? Result<void>{} : failure;
 }
 
-// What samples of the sector did not show may show here. The distance from a triangle is convex: a
-// facet whose nodes are all near one triangle is near it everywhere, and its middle is not looked at.
+// What the sector's check did not show may show here: rounding, and what became of facets. The distance
+// from a triangle is convex: a facet whose nodes are all near one triangle is near it everywhere.
 Result<void> SurfaceSectorSource::check_boundary(const SymmetryCellMesh& cell,
                                                  ExecutionContext& context) const {
   const RotationTable rotations(symmetry_.fold);
   std::vector<Point3> places(cell.nodes.size());
   std::vector<std::int32_t> near(cell.nodes.size(), -1);  // item of the tree; -1: not looked for
   std::int32_t last = -1;
+  DistanceBound bound(tree_, allowed_);
   const auto too_far = [&](Point3 p) {
     return fail(ErrorCode::kInternal,
                 "the mesh's boundary is farther from the surface than the tolerance of " +
@@ -450,9 +454,9 @@ Result<void> SurfaceSectorSource::check_boundary(const SymmetryCellMesh& cell,
     std::fill(near.begin(), near.end(), -1);
     for (std::size_t i = 0; i + 2 < cell.boundary.size(); i += 3) {
       bool is_near_one = true;
-      Point3 sum;
-      for (std::size_t j = i; j < i + 3; ++j) {
-        const auto node = static_cast<std::size_t>(cell.boundary[j]);
+      std::array<Point3, 3> corners;
+      for (std::size_t j = 0; j < 3; ++j) {
+        const auto node = static_cast<std::size_t>(cell.boundary[i + j]);
         if (near[node] < 0) {
           const OrbitVertex v = cell.nodes[node];
           places[node] = rotations.rotate(cell.orbit_points[static_cast<std::size_t>(v.orbit)],
@@ -462,11 +466,11 @@ Result<void> SurfaceSectorSource::check_boundary(const SymmetryCellMesh& cell,
         } else {
           last = near[node];
         }
-        sum = sum + places[node];
+        corners[j] = places[node];
         is_near_one = is_near_one && near[node] == near[static_cast<std::size_t>(cell.boundary[i])];
       }
-      const Point3 middle = (1.0 / 3) * sum;
-      if (!is_near_one && !tree_.within(middle, allowed_, last)) return too_far(middle);
+      if (is_near_one) continue;
+      if (const auto beyond = bound.beyond(corners)) return too_far(*beyond);
     }
   }
   return {};

@@ -109,7 +109,6 @@ class SurfaceSectorSource final : public SectorSource {
   bool of_mesh_ = false;         // full_ is the boundary of a mesh
   BoundaryTopology topology_;    // of the input
   TriangleTree tree_;            // of the input
-  std::vector<Point3> samples_;  // of the input
   FaceGroups groups_;            // of the input
   // Whether nodes of the boundary go to its faces.
   [[nodiscard]] bool curves(const MeshOptions& options) const;

@@ -222,6 +222,35 @@ TEST(VerifyDamage, MissingElements) {
   expect_found("model.boundary", squares, &planar);
 }
 
+// The top of a cube with two opposite corners raised, divided along the other diagonal than the model's:
+// all nodes and middles of faces are within the tolerance of 1.7e-3, the middle of the diagonal is not.
+TEST(VerifyDamage, FacesThatBulgeBetweenTheirMiddles) {
+  constexpr double kRaised = 2.2e-3;
+  MeshData mesh = test::cube_mesh(all_blocks({1, 1, 1}));
+  TriangleSurface surface = test::cube_surface(all_blocks({1, 1, 1}));
+  for (std::vector<Point3>* points : {&mesh.points, &surface.vertices}) {
+    for (Point3& p : *points) p.z += p.z > 0 && p.x == p.y ? kRaised : 0;
+  }
+  std::vector<std::size_t> top;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& v = surface.triangles[t];
+    if (std::all_of(v.begin(), v.end(), [&](std::int32_t i) { return surface.vertices[i].z > 0.5; })) {
+      top.push_back(t);
+    }
+  }
+  ASSERT_EQ(top.size(), 2U);
+  TriangleSurface other = surface;
+  const auto [a, b, c] = surface.triangles[top[0]];
+  const std::int32_t d = surface.triangles[top[1]][2];
+  ASSERT_TRUE(a != d && b != d && c != d);  // the square is a, b, c, d, divided by a and c
+  other.triangles[top[0]] = {a, b, d};
+  other.triangles[top[1]] = {b, c, d};
+  const std::array<Model, 2> models{surface, other};
+  const bool first = failed(mesh, &models[0]).empty();
+  expect_good(mesh, models[first ? 0 : 1]);
+  expect_found("model.on_surface", mesh, &models[first ? 1 : 0]);
+}
+
 TEST(VerifyDamage, MeshedVoids) {
   const Model plc = test::cube_plc(kU);
   const MeshData filled = test::cube_mesh(all_blocks({3, 2, 1}));
