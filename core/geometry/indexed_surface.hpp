@@ -22,6 +22,10 @@ struct Box3 {
   Point3 low;
   Point3 high;
   [[nodiscard]] double diagonal() const { return distance(low, high); }
+  [[nodiscard]] bool encloses(const Box3& other) const {
+    return low.x <= other.low.x && low.y <= other.low.y && low.z <= other.low.z &&
+           high.x >= other.high.x && high.y >= other.high.y && high.z >= other.high.z;
+  }
 };
 
 // Requires: at least one point.

@@ -138,7 +138,8 @@ void DistanceBound::take_apart(const Part& part) {
 bool DistanceBound::cut_out(const Part& part) {
   const std::array<Point3, 3> corners = surface_->corners_at(last_);
   const Point3 normal = area_normal(corners[0], corners[1], corners[2]);
-  if (!(std::abs(dot(normal, normal_)) > kSteepCosine * length(normal) * length(normal_))) return false;
+  if (!(std::abs(dot(normal, normal_)) > kSteepCosine * length(normal) * length(normal_)))
+    return false;
   std::array<Point3, 3> outwards;
   double beside = 0;  // how far the middle is
   for (std::size_t i = 0; i < 3; ++i) {
@@ -164,8 +165,8 @@ bool DistanceBound::cut_out(const Part& part) {
 
 // Across the longest of the ways from the middle to a corner.
 void DistanceBound::halve(const Polygon& corners, Point3 middle) {
-  const auto farthest = std::max_element(
-      corners.begin(), corners.end(), [&](const Point3& p, const Point3& q) {
+  const auto farthest =
+      std::max_element(corners.begin(), corners.end(), [&](const Point3& p, const Point3& q) {
         return squared_distance(p, middle) < squared_distance(q, middle);
       });
   Polygon below, above;

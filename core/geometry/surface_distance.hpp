@@ -36,7 +36,7 @@ class DistanceBound {
   struct Part {
     Polygon corners;
     Point3 middle;
-    double squared = 0;  // distance of the middle
+    double squared = 0;         // distance of the middle
     std::int32_t nearest = -1;  // to the middle; as `last_`
   };
 
@@ -48,7 +48,7 @@ class DistanceBound {
 
   const TriangleTree* surface_;
   double reach_;
-  Point3 normal_;  // of the triangle, not of unit length
+  Point3 normal_;           // of the triangle, not of unit length
   std::int32_t last_ = -1;  // the triangle that was near last, for the tree
   std::size_t in_all_ = 0;
   std::vector<Part> parts_;  // not yet known, a heap: the farthest middle first

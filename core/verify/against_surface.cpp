@@ -120,7 +120,8 @@ class SurfaceChecker {
         p[i] = full_.mesh.points[at];
         if (seen[at]++ == 0) near = from_mesh.look(surface, p[i], "the node") && near;
       }
-      near = from_mesh.look(surface, (1.0 / 3) * (p[0] + p[1] + p[2]), "the middle of a face") && near;
+      near =
+          from_mesh.look(surface, (1.0 / 3) * (p[0] + p[1] + p[2]), "the middle of a face") && near;
       if (!near) continue;
       if (const auto beyond = of_faces.beyond(p)) from_mesh.count(*beyond, "a face");
     }

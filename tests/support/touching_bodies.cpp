@@ -35,6 +35,10 @@ TriangleSurface prism(const std::vector<std::pair<double, double>>& polygon,
 namespace {
 
 constexpr double kRadius = 3;
+// Of bodies in the hollow of a drum.
+constexpr double kInner = 2.5;  // radius of the hollow
+constexpr double kWedgeDepth = 0.01;
+constexpr double kWedgeHeight = 0.7;
 
 std::vector<std::pair<double, double>> regular(std::int32_t n, double radius, double turn = 0) {
   std::vector<std::pair<double, double>> polygon;
@@ -43,6 +47,37 @@ std::vector<std::pair<double, double>> regular(std::int32_t n, double radius, do
     polygon.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
   }
   return polygon;
+}
+
+// In the hollow of a drum, at each side of its wall, which is `at` from the axis.
+TriangleSurface inside_part(Assembly kind, double at, double width) {
+  const double w = width / 4;
+  switch (kind) {
+    case Assembly::kPillars: return box_surface({at - 0.5, -w, -1}, {at, w, 1});
+    case Assembly::kWedges:
+      return box_surface({at - 0.5, -w, -0.4}, {at + kWedgeDepth, w, kWedgeHeight - 0.4});
+    case Assembly::kSpikes: {
+      TriangleSurface s;
+      s.vertices = {{at, 0, 0}, {at - 0.5, -w, -0.3}, {at - 0.5, w, -0.3}, {at - 0.5, 0, 0.4}};
+      s.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+      return s;
+    }
+    default: return box_surface({at - 0.5, -w, -0.4}, {at, w, 0.3});
+  }
+}
+
+TriangleSurface drum_with_bodies(std::int32_t n, Assembly kind) {
+  TriangleSurface whole = prism(regular(n, kRadius), -1.5, 1.5);
+  TriangleSurface hollow = prism(regular(n, kInner), -1, 1);
+  turn_inside_out(hollow);
+  append(whole, hollow);
+  const double half = std::numbers::pi / n;
+  for (std::int32_t i = 0; i < n; ++i) {
+    TriangleSurface one = inside_part(kind, kInner * std::cos(half), 2 * kInner * std::sin(half));
+    turn(one, (2 * i + 1) * half);
+    append(whole, one);
+  }
+  return whole;
 }
 
 TriangleSurface parts_of(std::int32_t n, Assembly kind) {
@@ -83,6 +118,10 @@ TriangleSurface parts_of(std::int32_t n, Assembly kind) {
       }
       break;
     }
+    case Assembly::kPillars:
+    case Assembly::kBrackets:
+    case Assembly::kWedges:
+    case Assembly::kSpikes: return drum_with_bodies(n, kind);
   }
   return whole;
 }
@@ -99,6 +138,20 @@ void round_to_single(TriangleSurface& surface) {
 }
 
 }  // namespace
+
+United united(std::int32_t n, Assembly kind) {
+  switch (kind) {
+    case Assembly::kRings: return {1, 1, 0};
+    case Assembly::kPillars:
+    case Assembly::kBrackets: return {2, 0, 0};
+    case Assembly::kWedges: {
+      const double width = kInner * std::sin(std::numbers::pi / n);  // half a side of the wall
+      return {2, 0, n * width * kWedgeDepth * kWedgeHeight};
+    }
+    case Assembly::kSpikes: return {2 + n, 0, 0};
+    default: return {1, 0, 0};
+  }
+}
 
 bool is_one_solid(Touch touch) {
   return touch != Touch::kEdge && touch != Touch::kEdgeFlush && touch != Touch::kCorner;
@@ -166,25 +219,25 @@ RandomSurface make_touching_bodies(std::uint64_t seed) {
   if (random.uniform() < 0.5) {
     centre = {20 * random.uniform() - 10, 20 * random.uniform() - 10, 20 * random.uniform() - 10};
   }
-  std::int64_t solids = 1, holes = 0;
+  United parts;
   if (random.uniform() < 0.4) {
     const Assembly kind = kAssemblies[random.next() % kAssemblies.size()];
-    holes = kind == Assembly::kRings ? 1 : 0;
+    parts = united(made.fold, kind);
     const Point3 turns{angle(), angle(), angle()};
     made.surface = assembled(made.fold, kind, turns, centre);
     made.description = "assembly of way " + std::to_string(static_cast<int>(kind));
   } else {
     const Touch touch = kTouches[random.next() % kTouches.size()];
-    solids = is_one_solid(touch) ? 1 : made.fold + 1;
+    parts.shells = is_one_solid(touch) ? 1 : made.fold + 1;
     made.surface = prism_with_bodies(made.fold, touch, angle(), centre);
     made.description = "bodies that touch a prism, way " + std::to_string(static_cast<int>(touch));
   }
   made.description += ", fold " + std::to_string(made.fold);
   const IndexedSurface indexed{
       made.surface.vertices, {made.surface.triangles.begin(), made.surface.triangles.end()}, {}};
-  made.volume = enclosed_volume(indexed, centre);
+  made.volume = enclosed_volume(indexed, centre) - parts.overlap;
   made.area = surface_area(indexed);
-  made.boundary = BoundaryTopology{solids, 2 * (solids - holes)};
+  made.boundary = BoundaryTopology{parts.shells, 2 * (parts.shells - parts.holes)};
   return made;
 }
 

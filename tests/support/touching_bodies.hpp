@@ -50,9 +50,23 @@ enum class Assembly : std::uint8_t {
   kRings,     // in each other
   kStack,     // of three discs
   kTeeth,     // on a disc, each as wide as its side
+  // Within a closed hollow:
+  kPillars,   // from its floor to its ceiling, against its wall
+  kBrackets,  // against its wall
+  kWedges,    // in its wall by a hundredth
+  kSpikes,    // with a corner at its wall: they stay apart
 };
-inline constexpr std::array kAssemblies = {Assembly::kPin, Assembly::kFlushPin, Assembly::kRings,
-                                           Assembly::kStack, Assembly::kTeeth};
+inline constexpr std::array kAssemblies = {
+    Assembly::kPin,     Assembly::kFlushPin, Assembly::kRings,  Assembly::kStack, Assembly::kTeeth,
+    Assembly::kPillars, Assembly::kBrackets, Assembly::kWedges, Assembly::kSpikes};
+
+// What bodies that have faces in common become as one.
+struct United {
+  std::int64_t shells = 1;  // closed surfaces of the boundary
+  std::int64_t holes = 0;   // through them
+  double overlap = 0;       // volume that bodies have in common
+};
+[[nodiscard]] United united(std::int32_t n, Assembly kind);
 
 // Bodies of n sides that have whole faces in common, cut into triangles otherwise; turned about all axes by
 // what follows of `turns`.

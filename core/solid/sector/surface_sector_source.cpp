@@ -61,10 +61,16 @@ constexpr double kSinglePrecision = 2.5e-7;
 constexpr double kLeastNoiseRel = 1e-6;
 // Facets of CAD parts may be so far from flat, of the tolerance, by the axis' own error.
 constexpr double kFlatShareOfTolerance = 0.02;
+// Shares of what flat parts may be moved by, tried in turn where sheets are too near for more.
+constexpr std::array<double, 2> kFlattenShares = {1, 0.01};
 // Shares of the tolerance that the improvement of the triangles may use, tried in turn until hardly
 // any thin triangle is left. With narrow corners two results are enough.
-constexpr std::array<double, 6> kImproveShares = {0.35, 0.3, 0.25, 0.2, 0.1, 0.05};
+constexpr std::array<double, 9> kImproveShares = {0.35, 0.3, 0.25, 0.2, 0.1, 0.05, 0.01, 0.002, 0};
 constexpr int kEnoughTaken = 2;
+// From here on only where nothing else is the input's shape: sheets may be nearer than a larger share.
+// They are tried after so many failures.
+constexpr double kLastShares = 0.01;
+constexpr int kEnoughFailed = 4;
 // Likewise for what has been improved already. A pass that leaves more than that of the cost is the
 // last one: passes end, as each but the last makes the cost smaller by a factor.
 constexpr std::array<double, 2> kAgainShares = {0.3, 0.15};
@@ -228,6 +234,7 @@ SurfaceSectorSource::SurfaceSectorSource(CleanSurface clean, Symmetry symmetry, 
   noise_ = move_to_frame(full_, symmetry_);
   topology_ = topology_of(full_);
   tree_ = TriangleTree(full_.points, full_.triangles);
+  given_ = std::make_shared<const IndexedSurface>(full_);
   choose_candidates();
 }
 
@@ -300,6 +307,34 @@ std::unique_ptr<SectorSource> SurfaceSectorSource::with_surface(
   return other;
 }
 
+// Sheets that are nearer to each other than what flat parts may be moved by may come to cross: then less
+// is moved, as long as the surface before is the input's shape.
+Result<SectorShape> SurfaceSectorSource::flatten_and_improve(QuotientSurface& surface,
+                                                             const Candidate& candidate,
+                                                             ExecutionContext& context) const {
+  const QuotientSurface given = surface;
+  Result<SectorShape> first = fail(ErrorCode::kInternal, "");
+  for (const double share : kFlattenShares) {
+    surface = given;
+    const double noise = share * noise_;
+    const FlatnessTolerances flatness{
+        noise, std::max(noise, share * kFlatShareOfTolerance * candidate.tolerance)};
+    Result<SectorShape> shape = fail(ErrorCode::kInternal, "");
+    if (const auto flat = flatten_planar_patches(surface, flatness, context); flat) {
+      shape = improve(surface, candidate, flatness, context);
+    } else {
+      shape = error_of(flat);
+    }
+    if (shape || is_limit(shape.error().code)) return shape;
+    if (share == kFlattenShares.front()) first = std::move(shape);
+    if (!check_shape(given, candidate.shell_share, context)) {
+      SYMCELL_TRY(context.check());
+      break;
+    }
+  }
+  return first;
+}
+
 // What each share of the tolerance leads to differs from part to part, and how much of it the
 // symmetry error has used up from place to place: a result that is no longer the input's shape is
 // none.
@@ -310,11 +345,15 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
   const QuotientSurface given = surface;
   Error last;
   std::optional<SectorShape> best;
-  int taken = 0;
+  int taken = 0, failed = 0;
   std::size_t made = 0;
   for (const double share : kImproveShares) {
+    if (best && share <= kLastShares) break;
+    if (failed >= kEnoughFailed && share > kLastShares) continue;
     QuotientSurface improved = given;
-    SYMCELL_TRY(improve_surface(improved, share * candidate.tolerance, flatness, context));
+    if (share > 0) {
+      SYMCELL_TRY(improve_surface(improved, share * candidate.tolerance, flatness, context));
+    }
     const SectorShape shape = shape_of(improved);
     ++taken;
     made += improved.triangles.size();
@@ -327,6 +366,7 @@ Result<SectorShape> SurfaceSectorSource::improve(QuotientSurface& surface,
         }
         last = same.error();
         --taken;
+        ++failed;
         continue;
       }
       surface = std::move(improved);
@@ -407,10 +447,9 @@ Result<void> SurfaceSectorSource::check_shape(const QuotientSurface& surface,
 Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
                                                   ExecutionContext& context) const {
   const auto is_near = [](DistanceBound& bound, const IndexedSurface& surface) {
-    return std::all_of(
-        surface.triangles.begin(), surface.triangles.end(), [&](const Triangle& t) {
-          return !bound.beyond({surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]});
-        });
+    return std::all_of(surface.triangles.begin(), surface.triangles.end(), [&](const Triangle& t) {
+      return !bound.beyond({surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]});
+    });
   };
   const auto failure = fail(ErrorCode::kInternal, "the sector is too far from the surface");
   const RotationTable rotations(symmetry_.fold);
@@ -431,7 +470,7 @@ Result<void> SurfaceSectorSource::check_distances(const IndexedSurface& sector,
   SYMCELL_TRY(context.check());
   const TriangleTree copies(all.points, all.triangles);
   DistanceBound from_copies(copies, allowed_);
-  return is_near(from_copies, full_) ? Result<void>{} : failure;
+  return is_near(from_copies, *given_) ? Result<void>{} : failure;
 }
 
 // What the sector's check did not show may show here: rounding, and what became of facets. The distance
@@ -574,10 +613,7 @@ Result<Sector> SurfaceSectorSource::sector(std::int32_t index, ExecutionContext&
     if (!glued) return error_of(glued);
     quotient = std::move(glued->surface);
   }
-  const FlatnessTolerances flatness{noise_,
-                                    std::max(noise_, kFlatShareOfTolerance * candidate.tolerance)};
-  SYMCELL_TRY(flatten_planar_patches(quotient, flatness, context));
-  const auto shape = improve(quotient, candidate, flatness, context);
+  const auto shape = flatten_and_improve(quotient, candidate, context);
   if (!shape) return error_of(shape);
   auto sector = quotient_to_sector(quotient);
   if (sector) {

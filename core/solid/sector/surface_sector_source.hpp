@@ -79,6 +79,9 @@ class SurfaceSectorSource final : public SectorSource {
     double shell_share;  // see check_shape
   };
   void choose_candidates();
+  [[nodiscard]] Result<SectorShape> flatten_and_improve(QuotientSurface& surface,
+                                                        const Candidate& candidate,
+                                                        ExecutionContext& context) const;
   [[nodiscard]] Result<SectorShape> improve(QuotientSurface& surface,
                                             const Candidate& candidate,
                                             const FlatnessTolerances& flatness,
@@ -105,11 +108,12 @@ class SurfaceSectorSource final : public SectorSource {
   double noise_;    // of coordinates
   double volume_;   // of the input
   double area_;     // likewise
-  IndexedSurface full_;          // that sectors are cut from; local frame
-  bool of_mesh_ = false;         // full_ is the boundary of a mesh
-  BoundaryTopology topology_;    // of the input
-  TriangleTree tree_;            // of the input
-  FaceGroups groups_;            // of the input
+  IndexedSurface full_;                          // that sectors are cut from; local frame
+  bool of_mesh_ = false;                         // full_ is the boundary of a mesh
+  BoundaryTopology topology_;                    // of the input
+  TriangleTree tree_;                            // of the input
+  std::shared_ptr<const IndexedSurface> given_;  // the input; local frame
+  FaceGroups groups_;                            // of the input
   // Whether nodes of the boundary go to its faces.
   [[nodiscard]] bool curves(const MeshOptions& options) const;
 

@@ -603,6 +603,7 @@ class Cleaner {
       return {};
     }
     const double reach = farthest_sample(*wrapped, soup);
+    const double within = farthest_sample(soup, *wrapped);
     const std::string why = result_.problem->message;
     result_.problem.reset();
     surface() = std::move(*wrapped);
@@ -611,6 +612,11 @@ class Cleaner {
                        " outside of them that closes gaps below " +
                        describe_rounded(kWrapAlpha * unit) + ", at most " +
                        describe_rounded(reach) + " away, because " + why};
+    if (within > kWrapAlpha * unit + offset) {
+      result_.repairs.push_back("what lies within the wrap is filled, up to " +
+                                describe_rounded(within) +
+                                " from it: hollows that nothing leads into, and inner walls");
+    }
     return {};
   }
 

@@ -84,14 +84,28 @@ class Contacts {
     double height;  // of the point
   };
 
-  // Hollows are no bodies: a thin wall between one and the outside looks like two bodies that overlap.
   void find_filled() {
     filled_.assign(body_.size(), 0);
+    std::vector<std::vector<Point3>> corners(body_.size());
     const Point3 origin = surface_.points.front();
     for (std::size_t t = 0; t < body_.size(); ++t) {
       const Triangle& v = surface_.triangles[t];
       filled_[body_[t]] += dot(surface_.points[v[0]] - origin, area_normal(surface_, v));
+      for (const std::int32_t p : v) corners[body_[t]].push_back(surface_.points[p]);
     }
+    boxes_.resize(body_.size());
+    for (std::size_t b = 0; b < corners.size(); ++b) {
+      if (!corners[b].empty()) boxes_[b] = bounding_box(corners[b]);
+    }
+  }
+
+  // Whether corners of triangle s may go into what t bounds. Hollows do not move. A wall between a hollow
+  // and the outside may be thin, and look like two bodies that overlap: what has the hollow in it does
+  // not touch it.
+  [[nodiscard]] bool may_touch(std::int32_t s, std::int32_t t) const {
+    const std::int32_t body = body_[s], other = body_[t];
+    if (body == other || !(filled_[body] > 0)) return false;
+    return filled_[other] > 0 || !boxes_[body].encloses(boxes_[other]);
   }
 
   // Bodies that share corners get their own.
@@ -144,6 +158,7 @@ class Contacts {
   // Notes the plane of t for those corners of s that touch it from outside; with `far` also for those that
   // touch only the plane, beyond the triangle.  Returns how many there are.
   std::size_t look_at(std::int32_t s, std::int32_t t, bool far) {
+    if (!may_touch(s, t)) return 0;
     const Corners c = corners(t);
     const Point3 n = area_normal(c[0], c[1], c[2]);
     const double longest =
@@ -182,9 +197,7 @@ class Contacts {
             state = context_.check();
             if (!state) return true;
           }
-          if (body_[s] == body_[t] || !(filled_[body_[s]] > 0 && filled_[body_[t]] > 0)) {
-            return false;
-          }
+          if (!may_touch(s, t) && !may_touch(t, s)) return false;
           if (within_reach(corners(s), corners(t), reach_)) near.emplace_back(s, t);
           return near.size() > kMostPairs;
         },
@@ -242,6 +255,7 @@ class Contacts {
   IndexedSurface own_;                                 // no two bodies share a corner
   std::vector<std::int32_t> body_;                     // per triangle
   std::vector<double> filled_;                         // per body: six times its volume
+  std::vector<Box3> boxes_;                            // likewise
   std::vector<std::vector<std::int32_t>> neighbours_;  // per corner, over edges
   std::vector<PlaneAt> planes_;
 };

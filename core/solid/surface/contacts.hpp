@@ -15,7 +15,8 @@ namespace symcell::solid {
 // plane: then all copies overlap by the same.
 // Returns the places of the corners moved.  None: no body touches another, or all that touch do so
 // exactly, or too many triangles are near others; the surface is as it was.
-// A body that is inside out is taken for a hollow and not moved; an open surface has no bodies.
+// A body that is inside out is taken for a hollow: it is not moved, and bodies that do not have it in
+// them may touch its wall; an open surface has no bodies.
 // Errors: limits.
 // Cost: O(n log n + pairs of triangles within reach).
 [[nodiscard]] Result<std::vector<Point3>> deepen_contacts(IndexedSurface& surface,

@@ -49,12 +49,6 @@ std::vector<std::array<Neighbour, 3>> neighbours_of(std::span<const Triangle> tr
   return result;
 }
 
-bool encloses(const Box3& outer, const Box3& inner) {
-  return outer.low.x <= inner.low.x && outer.low.y <= inner.low.y && outer.low.z <= inner.low.z &&
-         outer.high.x >= inner.high.x && outer.high.y >= inner.high.y &&
-         outer.high.z >= inner.high.z;
-}
-
 class Orienter {
  public:
   Orienter(IndexedSurface& surface,
@@ -180,24 +174,41 @@ class Orienter {
     return pairs;
   }
 
-  // For shells that meet.
-  [[nodiscard]] Result<bool> wholly_inside(std::size_t inner, std::size_t outer) const {
+  // Of a shell that meets another in corners or edges at most: where one of its triangles clearly is.
+  [[nodiscard]] bool is_inside(std::size_t inner, std::size_t outer) const {
+    double clearest = 0.5;
+    for (const std::int32_t t : members_[inner]) {
+      const Point3 middle = (1.0 / 3) * (point(t, 0) + point(t, 1) + point(t, 2));
+      const double w = std::abs(winding_number(surface_, members_[outer], middle));
+      if (std::abs(w - 0.5) > std::abs(clearest - 0.5)) clearest = w;
+      if (clearest < kSurelyOutside || clearest > kSurelyInside) break;
+    }
+    return clearest > 0.5;
+  }
+
+  // Of a shell that meets another: whether some of it lies inside the other, some outside.
+  struct Lies {
+    bool inside = false;
+    bool outside = false;
+  };
+  [[nodiscard]] Result<Lies> lies(std::size_t inner, std::size_t outer) const {
     const std::size_t step = members_[inner].size() / kMostLookedAt + 1;
     std::vector<Triangle> triangles;
     for (const std::int32_t t : members_[outer]) triangles.push_back(surface_.triangles[t]);
     const TriangleTree tree(surface_.points, triangles);
     const double on = kOnShellRel * bounding_box(surface_.points).diagonal();
-    bool inside = false;
+    Lies result;
     for (std::size_t i = 0; i < members_[inner].size(); i += step) {
       SYMCELL_TRY(context_.check());
       const std::int32_t t = members_[inner][i];
       const Point3 middle = (1.0 / 3) * (point(t, 0) + point(t, 1) + point(t, 2));
       if (tree.within(middle, on)) continue;
       const double w = std::abs(winding_number(surface_, members_[outer], middle));
-      if (w < kSurelyOutside) return false;
-      inside |= w > kSurelyInside;
+      result.outside |= w < kSurelyOutside;
+      result.inside |= w > kSurelyInside;
+      if (result.outside && result.inside) break;
     }
-    return inside;
+    return result;
   }
 
   Result<void> nest() {
@@ -235,27 +246,44 @@ class Orienter {
       }
       std::vector<std::int32_t> enclosing;
       for (std::size_t o = 0; o < count; ++o) {
-        if (o == s || !encloses(boxes[o], boxes[s])) continue;
+        if (o == s || !boxes[o].encloses(boxes[s])) continue;
         const std::pair<std::int32_t, std::int32_t> both =
             std::minmax(static_cast<std::int32_t>(s), static_cast<std::int32_t>(o));
         if (std::binary_search(meeting.begin(), meeting.end(), both)) {
           if (positive_[s] == positive_[o]) continue;
-          const auto inside = wholly_inside(s, o);
-          if (!inside) return error_of(inside);
-          if (*inside) enclosing.push_back(static_cast<std::int32_t>(o));
+          const auto where = lies(s, o);
+          if (!where) return error_of(where);
+          if (where->inside && !where->outside) enclosing.push_back(static_cast<std::int32_t>(o));
           continue;
         }
-        const double w = winding_number(surface_, members_[o], point(members_[s].front(), 0));
-        if (std::abs(w) > 0.5) enclosing.push_back(static_cast<std::int32_t>(o));
+        if (is_inside(s, o)) enclosing.push_back(static_cast<std::int32_t>(o));
       }
       shells_.depth[s] = count_apart(enclosing, meeting);
       shells_.in_overlap[s] = shells_.depth[s] < static_cast<std::int32_t>(enclosing.size());
     }
+    SYMCELL_TRY(deepen_in_hollows(meeting));
     for (std::size_t s = 0; s < count; ++s) {
       if (positive_[s] == (shells_.depth[s] % 2 == 0)) continue;
       for (const std::int32_t t : members_[s]) turn(t);
       shells_.turned[s] = true;
       ++shells_.flipped_shells;
+    }
+    return {};
+  }
+
+  // A body that lies in a hollow, and in its wall by more than rounding, is a body in a hollow.
+  Result<void> deepen_in_hollows(
+      const std::vector<std::pair<std::int32_t, std::int32_t>>& meeting) {
+    const std::vector<std::int32_t> depth = shells_.depth;
+    const auto is_hollow = [&](std::size_t s) { return !positive_[s] && depth[s] % 2 == 1; };
+    for (const auto& [a, b] : meeting) {
+      for (const auto& [body, hollow] : {std::pair(a, b), std::pair(b, a)}) {
+        if (!is_hollow(hollow) || !positive_[body] || shells_.depth[body] != depth[hollow])
+          continue;
+        const auto where = lies(body, hollow);
+        if (!where) return error_of(where);
+        if (where->inside) ++shells_.depth[body];
+      }
     }
     return {};
   }

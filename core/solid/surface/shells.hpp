@@ -27,7 +27,8 @@ struct Shells {
 // its own; neighbours are made to agree, most triangles of a shell staying as they were; shells at
 // even depth get positive, at odd depth (cavities) negative volume.
 // `crossing`: pairs of triangles that intersect. A shell that meets another counts as enclosed by it
-// only if nothing of it lies outside and it looks to the other side.
+// only if nothing of it lies outside and it looks to the other side; or if the other is a hollow, and it
+// a body of which some lies in the hollow.
 // Requires: every edge has an even number of triangles.  Errors: kNotWatertight (one-sided, or no
 // orientation at an edge of four), kDegenerateGeometry (a shell that encloses no volume), limits.
 // Cost: O(n log n) + shells * triangles for pairs of shells whose boxes are nested.

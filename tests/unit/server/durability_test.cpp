@@ -193,9 +193,10 @@ TEST_F(DurableServiceTest, RetentionRemovesFilesOnceTheirRowsAreGoneForGood) {
 }
 
 // Runs one job to its end; returns it. Calls `submitted` once the disk has the job.
-Job run_one(JobEngine& engine,
-            const std::filesystem::path& folder,
-            const std::function<void()>& submitted = [] {}) {
+Job run_one(
+    JobEngine& engine,
+    const std::filesystem::path& folder,
+    const std::function<void()>& submitted = [] {}) {
   Metrics metrics;
   Logger logger{LogLevel::kOff, LogFormat::kText};
   JobService jobs(folder, {}, engine, metrics, logger);

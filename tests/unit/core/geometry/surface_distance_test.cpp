@@ -117,7 +117,8 @@ TEST(DistanceBound, WallsBesideAFaceDoNotHoldItUp) {
   }
   for (int i = 0; i < kSides; ++i) {
     const std::int32_t a = 4 * i, b = 4 * ((i + 1) % kSides);
-    for (const auto& [p, q] : {std::pair(0, 1), std::pair(0, 2), std::pair(2, 3), std::pair(1, 3)}) {
+    for (const auto& [p, q] :
+         {std::pair(0, 1), std::pair(0, 2), std::pair(2, 3), std::pair(1, 3)}) {
       box.triangles.push_back({a + p, b + p, b + q});
       box.triangles.push_back({a + p, b + q, a + q});
     }

@@ -234,7 +234,8 @@ TEST(VerifyDamage, FacesThatBulgeBetweenTheirMiddles) {
   std::vector<std::size_t> top;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     const auto& v = surface.triangles[t];
-    if (std::all_of(v.begin(), v.end(), [&](std::int32_t i) { return surface.vertices[i].z > 0.5; })) {
+    if (std::all_of(v.begin(), v.end(),
+                    [&](std::int32_t i) { return surface.vertices[i].z > 0.5; })) {
       top.push_back(t);
     }
   }

@@ -302,6 +302,25 @@ TEST(RepairSurface, DropsSmallPartsWhenAsked) {
   EXPECT_DOUBLE_EQ(cleaned(surface, Repair::kAll).volume, 1);
 }
 
+// A wrap has no hollows: that it filled one is told.
+TEST(RepairSurface, WhatAWrapFillsIsTold) {
+  constexpr double kTolerance = 5e-3;
+  TriangleSurface surface = box_surface({0, 0, 0}, {4, 4, 4});
+  add_triangle(surface, {5, 0, 0}, {6, 0, 0},
+               {6, 0, 1});  // a sheet: nothing else than wrapping helps
+  const auto told = [](const CleanSurface& clean) {
+    EXPECT_FALSE(clean.problem);
+    return std::ranges::any_of(clean.repairs, [](const std::string& repair) {
+      return repair.find("within the wrap is filled") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(told(cleaned(surface, Repair::kWrap, kTolerance)));
+  TriangleSurface hollow = box_surface({1, 1, 1}, {3, 3, 3});
+  turn_inside_out(hollow);
+  append(surface, hollow);
+  EXPECT_TRUE(told(cleaned(surface, Repair::kWrap, kTolerance)));
+}
+
 // A body and what may be a hollow reach through each other.
 TEST(RepairSurface, LeavesWhatMayBeAHollow) {
   TriangleSurface surface = box_surface({0, 0, 0}, {2, 2, 2}), other = surface;
