@@ -62,7 +62,7 @@ void cut(const std::vector<Point3>& part,
   if (above.size() < 3 || highest <= 0) above.clear();
 }
 
-constexpr auto is_nearer = [](const auto& part, const auto& other) {
+constexpr auto kIsNearer = [](const auto& part, const auto& other) {
   return part.squared < other.squared;
 };
 
@@ -92,7 +92,7 @@ std::optional<Point3> DistanceBound::beyond(const std::array<Point3, 3>& triangl
   look_at(Polygon(triangle.begin(), triangle.end()));
   for (std::size_t taken = 0; !found_ && !parts_.empty(); ++taken) {
     if (taken == kMostParts || in_all_ >= kMostPartsInAll) break;
-    std::pop_heap(parts_.begin(), parts_.end(), is_nearer);
+    std::pop_heap(parts_.begin(), parts_.end(), kIsNearer);
     const Part part = std::move(parts_.back());
     parts_.pop_back();
     last_ = part.nearest;
@@ -103,9 +103,9 @@ std::optional<Point3> DistanceBound::beyond(const std::array<Point3, 3>& triangl
 
 bool DistanceBound::is_near_at(std::span<const Point3> corners) const {
   if (last_ < 0) return false;
-  const auto [a, b, c] = surface_->corners_at(last_);
+  const std::array<Point3, 3> at = surface_->corners_at(last_);
   return std::all_of(corners.begin(), corners.end(), [&](const Point3& p) {
-    return squared_distance(p, closest_point(p, a, b, c)) <= reach_ * reach_;
+    return squared_distance(p, closest_point(p, at[0], at[1], at[2])) <= reach_ * reach_;
   });
 }
 
@@ -126,7 +126,7 @@ void DistanceBound::look_at(Polygon corners) {
     return;
   }
   parts_.push_back({std::move(corners), middle, hit.squared, last_});
-  std::push_heap(parts_.begin(), parts_.end(), is_nearer);
+  std::push_heap(parts_.begin(), parts_.end(), kIsNearer);
 }
 
 void DistanceBound::take_apart(const Part& part) {
