@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "core/geometry/rotation.hpp"
 #include "tests/support/surface_builders.hpp"
@@ -55,10 +56,18 @@ TEST(MeshModel, StatisticsOfATubeListTheFolds) {
 TEST(MeshModel, TakesADivisorWhereTheFoldHasNoMesh) {
   // Cubes that overlap at a corner by so little that no cut about their diagonal is found.
   const auto cube = [](double low, double high) {
-    return test::prism({{low, low}, {high, low}, {high, high}, {low, high}}, low, high);
+    TriangleSurface s;
+    for (const double z : {low, high}) {
+      for (const auto& [x, y] : {std::pair(low, low), {high, low}, {high, high}, {low, high}}) {
+        s.vertices.push_back({x, y, z});
+      }
+    }
+    s.triangles = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
+                   {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
+    return s;
   };
   TriangleSurface cubes = cube(0, 1);
-  append(cubes, cube(1 - 1e-5, 2 - 1e-5));
+  append(cubes, cube(1 - 3e-5, 2 - 3e-5));
   ExecutionContext context;
   MeshOptions options;
   const auto chosen = mesh_model(cubes, options, context);
