@@ -43,6 +43,7 @@ std::string_view warning_code_name(WarningCode code) {
     case WarningCode::kMarkersBreakSymmetry: return "markers_break_symmetry";
     case WarningCode::kLoopsJoined: return "loops_joined";
     case WarningCode::kEntitiesLeftOut: return "entities_left_out";
+    case WarningCode::kOpenContour: return "open_contour";
     case WarningCode::kModelRepaired: return "model_repaired";
     case WarningCode::kVerticesCopied: return "vertices_copied";
     case WarningCode::kArcsAsChords: return "arcs_as_chords";
@@ -136,6 +137,23 @@ Warning loops_joined_warning(std::size_t ends, double widest) {
 Warning entities_left_out_warning(const std::vector<std::string>& left_out) {
   return {WarningCode::kEntitiesLeftOut, "of the drawing was left out: " + listed(left_out, ", "),
           "explode them to lines and arcs if they belong to the model"};
+}
+
+Warning segments_left_out_warning(std::size_t pieces, Point2 where) {
+  return {WarningCode::kEntitiesLeftOut,
+          std::to_string(pieces) + (pieces == 1 ? " piece" : " pieces") +
+              " of segments, such as one at " + describe_point(where) + ", " +
+              (pieces == 1 ? "bounds" : "bound") + " nothing that is meshed, and " +
+              (pieces == 1 ? "is" : "are") + " left out",
+          "close them into loops if they bound a part of the model, or remove them"};
+}
+
+Warning open_contour_warning(std::size_t contours, const std::string& where) {
+  return {WarningCode::kOpenContour,
+          std::to_string(contours) + (contours == 1 ? " contour is" : " contours are") +
+              " open by little, such as at " + where +
+              ": segments within the mesh, which bound nothing",
+          "draw the ends onto each other if the contour bounds a hole or a region"};
 }
 
 Warning faces_as_chords_warning(const Curving& counts) {

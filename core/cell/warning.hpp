@@ -27,6 +27,7 @@ enum class WarningCode : std::uint8_t {
   kMarkersBreakSymmetry,  // the geometry alone has a larger fold
   kLoopsJoined,           // ends that stood beside each other were joined
   kEntitiesLeftOut,       // a drawing holds what is no part of a model
+  kOpenContour,           // segments that all but close round a part of a planar model
   kModelRepaired,         // a planar model was mended on request
   kVerticesCopied,        // all sectors of a planar model got the vertices of all
   kArcsAsChords,          // vertices or sides of the mesh lie beside the arcs they belong to
@@ -80,6 +81,10 @@ struct Warning {
 [[nodiscard]] Warning loops_joined_warning(std::size_t ends, double widest);
 // Requires: the lists are not empty.
 [[nodiscard]] Warning entities_left_out_warning(const std::vector<std::string>& left_out);
+// `pieces`: of segments with nothing meshed on either side; `where`: an end of one.
+[[nodiscard]] Warning segments_left_out_warning(std::size_t pieces, Point2 where);
+// `where`: the two ends of one of them, in words.
+[[nodiscard]] Warning open_contour_warning(std::size_t contours, const std::string& where);
 [[nodiscard]] Warning model_repaired_warning(const std::vector<std::string>& repairs);
 // `copies`: vertices of the whole model that it does not have.
 [[nodiscard]] Warning vertices_copied_warning(std::int32_t fold, std::size_t copies);

@@ -1,7 +1,9 @@
 // Triangles over shared points, and their sums.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,6 +24,11 @@ struct Box3 {
   Point3 low;
   Point3 high;
   [[nodiscard]] double diagonal() const { return distance(low, high); }
+  // The largest coordinate.
+  [[nodiscard]] double magnitude() const {
+    return std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x),
+                     std::abs(high.y), std::abs(high.z)});
+  }
   [[nodiscard]] bool encloses(const Box3& other) const {
     return low.x <= other.low.x && low.y <= other.low.y && low.z <= other.low.z &&
            high.x >= other.high.x && high.y >= other.high.y && high.z >= other.high.z;

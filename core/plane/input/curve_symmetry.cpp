@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/base/index.hpp"
+#include "core/cell/inspection.hpp"
 #include "core/geometry/arc.hpp"
 #include "core/geometry/point_grid.hpp"
 
@@ -40,8 +41,10 @@ Point2 centroid_of(const Pslg& pslg, const ArcChains& arcs) {
 }
 
 struct Feature {
-  Point2 place;       // relative to the centre
-  double radius = 0;  // of a circle; 0: a corner; negative: of an arc, by its middle
+  Point2 place;  // relative to the centre
+  // The radius of a circle; 0: a corner; negative: by its middle an arc, the distance of its ends. Its radius
+  // would be known too badly where the arc is nearly straight and its ends are rounded.
+  double size = 0;
 };
 
 class Finder {
@@ -76,8 +79,9 @@ class Finder {
     for (const ArcChain& chain : arcs_.chains) {
       const Point2 middle = chain.centre - centre_;
       if (!chain.whole()) {
-        const Point2 spoke = pslg_.vertices[at(chain.a)] - chain.centre;
-        features_.push_back({middle + turned(spoke, chain.angle / 2), -chain.radius});
+        const Point2 a = pslg_.vertices[at(chain.a)], b = pslg_.vertices[at(chain.b)];
+        const Point2 spoke = a - chain.centre;
+        features_.push_back({middle + turned(spoke, chain.angle / 2), -distance(a, b)});
       } else if (length(middle) > tolerance_) {
         features_.push_back({middle, chain.radius});
       }
@@ -135,7 +139,7 @@ class Finder {
     const double angle = 2 * std::numbers::pi / fold;
     return std::all_of(features_.begin(), features_.end(), [&](const Feature& f) {
       const std::int32_t other = grid_->nearest(turned(f.place, angle));
-      return other >= 0 && std::abs(features_[at(other)].radius - f.radius) <= 2 * tolerance_;
+      return other >= 0 && std::abs(features_[at(other)].size - f.size) <= 2 * tolerance_;
     });
   }
 
@@ -156,7 +160,15 @@ CurveSymmetry find_curve_symmetry(const Pslg& pslg,
                                   double tolerance) {
   CurveSymmetry result;
   result.centre = options.center ? *options.center : centroid_of(pslg, chains);
-  result.fold = options.fold ? *options.fold : Finder(pslg, chains, result.centre, tolerance).run();
+  if (options.fold) {
+    result.fold = *options.fold;
+    return result;
+  }
+  // A fold that only just does not fit is told by its vertices, too.
+  result.fold = Finder(pslg, chains, result.centre, tolerance).run();
+  const std::int32_t nearly =
+      Finder(pslg, chains, result.centre, kNearTolerances * tolerance).run();
+  if (result.fold > 0 && nearly % result.fold == 0 && nearly > 0) result.fold = nearly;
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include "core/base/index.hpp"
 #include "core/geometry/arc.hpp"
 #include "core/geometry/point_grid.hpp"
+#include "core/geometry/segment_index.hpp"
 #include "core/model/describe.hpp"
 #include "core/plane/input/arc_chains.hpp"
 #include "core/plane/input/curve_set.hpp"
@@ -27,6 +28,59 @@ constexpr double kMostBulge = 1e4;  // less than 1/5000 of a turn from a full on
 constexpr int kMostDoublings = 8;   // of the chords of arcs that lie close
 constexpr double kCoarsestChord = std::numbers::pi / 3;
 constexpr std::int64_t kPlainFold = 12;  // circles about one centre alone: chords by the dozen
+
+// Of the angle at which a point sees a chord: on an arc it is known no better where it is an end's neighbour.
+constexpr double kOnArcAngle = 1e-7;
+
+// Whether p lies between the chord from a to b and its arc, or on either. From a point of the arc the chord is
+// seen at half the angle that the arc leaves of a full turn, from within at more.
+bool between_chord_and_arc(Point2 p, Point2 a, Point2 b, double bulge) {
+  const Point2 u = a - p, v = b - p;
+  const double side = cross(u, v);
+  if (side * bulge > 0) return false;  // beside the chord where the arc is not
+  const double seen = std::atan2(std::abs(side), dot(u, v));
+  return seen >= std::numbers::pi - std::abs(angle_of_bulge(bulge)) / 2 - kOnArcAngle;
+}
+
+// A face has chords where the model has arcs: a seed between the two is in another face than it was put in,
+// and one on an arc in neither.
+Result<void> check_seeds_beside_arcs(const Pslg& model, const ChordedPslg& chorded) {
+  const Pslg& pslg = chorded.pslg;
+  if (pslg.holes.empty() && pslg.regions.empty()) return {};
+  std::vector<IndexedSegment> chords;
+  double farthest = 0;  // that an arc is from its chord
+  for (std::size_t s = 0; s < pslg.segments.size(); ++s) {
+    const Point2 a = pslg.vertices[at(pslg.segments[s].a)],
+                 b = pslg.vertices[at(pslg.segments[s].b)];
+    chords.push_back({a, b});
+    farthest = std::max(farthest, std::abs(pslg.bulge(s)) / 2 * distance(a, b));
+  }
+  const SegmentIndex index(chords);
+  const auto check = [&](Point2 p, const char* list, std::size_t i,
+                         const char* what) -> Result<void> {
+    const auto hit = index.nearest(p, (1 + kOnArcRel) * farthest, [&](std::int32_t s) {
+      const double bulge = pslg.bulge(at(s));
+      return bulge != 0 && between_chord_and_arc(p, chords[at(s)].a, chords[at(s)].b, bulge);
+    });
+    if (hit.segment < 0) return {};
+    const std::int32_t source = chorded.source[at(hit.segment)];
+    return fail(
+        ErrorCode::kUnreachableSeed,
+        std::string(what) + " " + std::to_string(i) + " at " + describe_point(p) +
+            " lies on the arc of segment " + std::to_string(source) + " of marker " +
+            std::to_string(model.segments[at(source)].marker) +
+            ", or between the arc and its chords; move it into the face it is meant for, or "
+            "give a smaller chord_error",
+        {static_cast<std::int64_t>(i)}, "/" + std::string(list) + "/" + std::to_string(i));
+  };
+  for (std::size_t i = 0; i < pslg.holes.size(); ++i) {
+    SYMCELL_TRY(check(pslg.holes[i], "holes", i, "hole seed"));
+  }
+  for (std::size_t i = 0; i < pslg.regions.size(); ++i) {
+    SYMCELL_TRY(check(pslg.regions[i].point, "regions", i, "region seed"));
+  }
+  return {};
+}
 
 Result<void> check_bulges(const Pslg& pslg) {
   for (std::size_t s = 0; s < pslg.bulges.size(); ++s) {
@@ -62,7 +116,10 @@ class Discretiser {
       ChordedPslg result;
       SYMCELL_TRY(cut(result));
       auto valid = validate_pslg(result.pslg, context);
-      if (valid) return result;
+      if (valid) {
+        SYMCELL_TRY(check_seeds_beside_arcs(pslg_, result));
+        return result;
+      }
       Error error = valid.error();
       if (!may_mend(error, result) || !double_chords(error))
         return fail(in_numbers_of_model(std::move(error), result));

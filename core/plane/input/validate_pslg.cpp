@@ -10,6 +10,7 @@
 #include "core/geometry/predicates.hpp"
 #include "core/geometry/resolution.hpp"
 #include "core/model/describe.hpp"
+#include "core/plane/input/open_contours.hpp"
 #include "core/plane/input/subdomains.hpp"
 
 namespace symcell::plane {
@@ -250,6 +251,32 @@ Result<void> check_seed_conflicts(const Pslg& pslg, const PlanarMap& map) {
   return {};
 }
 
+Result<void> check_enclosed(const Pslg& pslg, const Subdomains& subdomains) {
+  if (subdomains.map.face_count < 2) {
+    return fail(ErrorCode::kDegenerateGeometry,
+                "the segments enclose no area; close them into loops");
+  }
+  SYMCELL_TRY(check_seed_places(pslg, subdomains.map));
+  SYMCELL_TRY(check_seed_conflicts(pslg, subdomains.map));
+  if (std::none_of(subdomains.faces.begin(), subdomains.faces.end(),
+                   [](const Subdomain& face) { return face.meshed; })) {
+    return fail(ErrorCode::kDegenerateGeometry,
+                "every face has a hole seed, so nothing is left to mesh; remove a hole seed");
+  }
+  return {};
+}
+
+// A contour that is open by a little is what most often makes two faces one.
+Error with_loose_ends(Error error, const Pslg& pslg, const OpenContours& open) {
+  if (is_limit(error.code)) return error;
+  const LooseEnds* ends = open.outside ? &*open.outside : nullptr;
+  if (ends == nullptr && !open.inside.empty()) ends = &open.inside.front();
+  if (ends != nullptr) {
+    error.message += "; a contour is open at " + describe_loose_ends(pslg, *ends);
+  }
+  return error;
+}
+
 }  // namespace
 
 Result<void> check_entities(const Pslg& pslg) {
@@ -266,19 +293,16 @@ Result<void> validate_pslg(const Pslg& pslg, ExecutionContext& context) {
   SYMCELL_TRY(check_not_collinear(pslg));
   const auto subdomains = make_subdomains(pslg, context);
   if (!subdomains) return error_of(subdomains);
-  if (subdomains->map.face_count < 2) {
-    return fail(ErrorCode::kDegenerateGeometry,
-                "the segments enclose no area; close them into loops");
-  }
-  SYMCELL_TRY(check_seed_places(pslg, subdomains->map));
-  SYMCELL_TRY(check_seed_conflicts(pslg, subdomains->map));
-  const bool meshed = std::any_of(subdomains->faces.begin(), subdomains->faces.end(),
-                                  [](const Subdomain& face) { return face.meshed; });
-  if (!meshed) {
-    return fail(ErrorCode::kDegenerateGeometry,
-                "every face has a hole seed, so nothing is left to mesh; remove a hole seed");
-  }
-  return {};
+  const OpenContours open = find_open_contours(pslg, *subdomains);
+  auto enclosed = check_enclosed(pslg, *subdomains);
+  if (!enclosed) return fail(with_loose_ends(enclosed.error(), pslg, open));
+  if (!open.outside) return {};
+  // What is meshed is less than the drawing shows.
+  return fail(ErrorCode::kDegenerateGeometry,
+              "a contour is open: " + describe_loose_ends(pslg, *open.outside) +
+                  ", all but close it, and what it was to enclose would be left out; draw the ends "
+                  "onto each other, or remove the contour",
+              {open.outside->a, open.outside->b}, pointer_to("vertices", at(open.outside->a)));
 }
 
 }  // namespace symcell::plane

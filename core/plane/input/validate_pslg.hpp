@@ -11,7 +11,7 @@ namespace symcell::plane {
 // segments, duplicate vertices (nearer than resolution_of), all collinear, overlapping and crossing
 // segments and vertices inside segments (exact), seeds (each hole and region seed inside a bounded
 // face of the PSLG, none on a segment, no face with both a hole and a region seed or two regions
-// that differ).  The first failure is returned with the ids at fault and a JSON pointer.
+// that differ), contours that all but close and would be left out.  The first failure is returned with the ids at fault and a JSON pointer.
 // A vertex in the interior of a segment is allowed: symmetrise cuts the segment there. So is one
 // that lies beside the segment by a rounding error (1e-12 of the diameter), even if segments that
 // end there cross it: no computed coordinates could do better.  A segment repeated with the same

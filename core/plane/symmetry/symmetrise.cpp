@@ -11,6 +11,7 @@
 #include "core/geometry/limits.hpp"
 #include "core/geometry/segment_index.hpp"
 #include "core/model/describe.hpp"
+#include "core/plane/input/open_contours.hpp"
 #include "core/plane/symmetry/close_fold.hpp"
 #include "core/plane/symmetry/fold_detection.hpp"
 #include "core/plane/symmetry/prepared_pslg.hpp"
@@ -313,6 +314,15 @@ Result<SymmetricPslg> symmetrise_subdomains(const Pslg& pslg,
   auto result = Symmetriser(pslg, subdomains, options, prepared, context).run(ladder);
   if (result && result->copied_vertices > 0) {
     result->warnings.push_back(vertices_copied_warning(result->fold, result->copied_vertices));
+  }
+  if (!result) return result;
+  const OpenContours open = find_open_contours(pslg, subdomains);
+  if (open.left_out > 0) {
+    result->warnings.push_back(segments_left_out_warning(open.left_out, open.left_out_at));
+  }
+  if (!open.inside.empty()) {
+    result->warnings.push_back(
+        open_contour_warning(open.inside.size(), describe_loose_ends(pslg, open.inside.front())));
   }
   return result;
 }

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/base/index.hpp"
+#include "core/geometry/indexed_surface.hpp"
 #include "core/geometry/predicates.hpp"
 #include "core/model/describe.hpp"
 
@@ -38,17 +39,11 @@ std::vector<std::int32_t> lone_points(const PlcFacet& facet) {
 
 void measure_box(PlcComplex& complex) {
   if (complex.points.empty()) return;
-  Point3 low = complex.points.front();
-  Point3 high = low;
-  for (const Point3 p : complex.points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  complex.box_low = low;
-  complex.box_high = high;
-  complex.diameter = distance(low, high);
-  complex.magnitude = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x),
-                                std::abs(high.y), std::abs(high.z)});
+  const Box3 box = bounding_box(complex.points);
+  complex.box_low = box.low;
+  complex.box_high = box.high;
+  complex.diameter = box.diagonal();
+  complex.magnitude = box.magnitude();
 }
 
 }  // namespace

@@ -145,10 +145,7 @@ class Cleaner {
   Result<bool> contacts_found() {
     if (untouched() || contacts_looked_for_) return false;
     contacts_looked_for_ = true;
-    const Box3& box = result_.box;
-    const double largest = std::max({std::abs(box.low.x), std::abs(box.low.y), std::abs(box.low.z),
-                                     std::abs(box.high.x), std::abs(box.high.y),
-                                     std::abs(box.high.z), result_.diameter});
+    const double largest = std::max(result_.box.magnitude(), result_.diameter);
     const double reach = std::min(kContactRel * largest, kMostContact * tolerance());
     IndexedSurface deepened = weld_exactly(input_);
     auto places = deepen_contacts(deepened, reach, context_);
@@ -444,7 +441,7 @@ class Cleaner {
     if (!pairs) return error_of(pairs);
     std::vector<Point3> places;
     const Touching touching = touching_places(surface(), &places);
-    if (pairs->empty() && touching.edges + touching.corners == 0) return {};
+    if (pairs->empty() && touching.none()) return {};
     const auto contacts = contacts_found();
     if (!contacts) return error_of(contacts);
     if (*contacts) return {};

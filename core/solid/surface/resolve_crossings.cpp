@@ -98,7 +98,7 @@ class Resolver {
       if (i > 0) put_in_middles(branching_edges(result_.surface));
       const auto split = split_sheets(result_.surface, kGapShare * tolerance_);
       if (!split) return error_of(split);
-      if (split->edges + split->corners == 0) return {};
+      if (split->none()) return {};
       if (i == 0) {
         result_.split.edges += split->edges;
         result_.split.corners += split->corners;
@@ -106,7 +106,7 @@ class Resolver {
       result_.gap = kGapShare * tolerance_;
     }
     const Touching left = touching_places(result_.surface);
-    if (left.edges + left.corners == 0) return {};
+    if (left.none()) return {};
     return fail(ErrorCode::kNotWatertight, "sheets that touch could not be told apart");
   }
 
@@ -136,8 +136,7 @@ class Resolver {
       IndexedSurface welded = weld_within(result_.surface, share * tolerance_);
       if (welded.points.size() == result_.surface.points.size()) continue;
       if (!odd_edges(welded).empty()) continue;
-      const Touching touching = touching_places(welded);
-      if (touching.edges + touching.corners > 0) continue;
+      if (!touching_places(welded).none()) continue;
       auto crossing = self_intersections(welded, 1, context_);
       if (!crossing) return error_of(crossing);
       if (!crossing->empty()) continue;

@@ -13,6 +13,7 @@ namespace symcell::solid {
 struct Touching {
   std::size_t edges = 0;    // with four and more triangles
   std::size_t corners = 0;  // at which triangles meet that do not hang together by edges there
+  [[nodiscard]] bool none() const { return edges + corners == 0; }
 };
 
 // Where the surface touches itself; a corner at such an edge is not counted once more.

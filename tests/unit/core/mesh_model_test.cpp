@@ -13,7 +13,6 @@
 
 #include "core/geometry/rotation.hpp"
 #include "tests/support/surface_builders.hpp"
-#include "tests/support/touching_bodies.hpp"
 
 namespace symcell {
 namespace {

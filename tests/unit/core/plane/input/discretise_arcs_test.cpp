@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <variant>
 
 #include "core/geometry/arc.hpp"
+#include "core/mesh_model.hpp"
 
 namespace symcell::plane {
 namespace {
@@ -69,6 +72,71 @@ TEST(DiscretiseArcs, ChordsAreInPhaseWithTheFold) {
     EXPECT_EQ(with_marker(result.pslg, 1) % static_cast<std::size_t>(bolts), 0U) << bolts;
     EXPECT_EQ(result.pslg.segments.size(), result.source.size());
   }
+}
+
+// A star of nearly straight arcs, as a gear's flanks are, every number rounded as drawings have them.
+Pslg rounded_star(std::int32_t tips, double unit) {
+  const auto rounded = [&](double x) { return unit * std::round(x / unit); };
+  Pslg pslg;
+  for (std::int32_t i = 0; i < 2 * tips; ++i) {
+    const double angle = std::numbers::pi * i / tips + 0.3, radius = i % 2 == 0 ? 40 : 33;
+    pslg.vertices.push_back({rounded(radius * std::cos(angle)), rounded(radius * std::sin(angle))});
+    pslg.segments.push_back({i, (i + 1) % (2 * tips), 0});
+    pslg.bulges.push_back(rounded(i % 2 == 0 ? 0.0123 : -0.0127));
+  }
+  return pslg;
+}
+
+// The radius of a nearly straight arc is known far worse than its ends are.
+TEST(DiscretiseArcs, RoundedArcsKeepTheirFold) {
+  for (const std::int32_t tips : {5, 13, 15, 17}) {
+    SCOPED_TRACE(tips);
+    ExecutionContext context;
+    const auto found = inspect_model(Model(rounded_star(tips, 1e-5)), {}, context);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(std::get<PslgInspection>(*found).fold, tips);
+    // Beyond the tolerance, but not by ten times: not taken, and told.
+    const auto nearly = inspect_model(Model(rounded_star(tips, 2e-4)), {}, context);
+    ASSERT_TRUE(nearly) << nearly.error().message;
+    const auto& inspection = std::get<PslgInspection>(*nearly);
+    EXPECT_EQ(inspection.fold, 1);
+    EXPECT_TRUE(
+        std::any_of(inspection.warnings.begin(), inspection.warnings.end(),
+                    [&](const Warning& w) { return w.near_fold && w.near_fold->fold == tips; }));
+  }
+}
+
+// On an arc, or between it and its chord, a seed is on another side of the chords than of the arc, or of neither.
+TEST(DiscretiseArcs, SeedsOnArcsAreRefused) {
+  Pslg plate;
+  add_circle(plate, {0, 0}, 10, 0, 1);
+  add_circle(plate, {4, 0}, 1.5, std::numbers::pi / 2, 2);
+  plate.segments.push_back({2, 3, 3});  // an arc through the hole
+  plate.bulges.push_back(0.2);
+  const auto on_arc = [&](double share) {
+    return arc_point(plate.vertices[2], plate.vertices[3], 0.2, share);
+  };
+  ExecutionContext context;
+  const auto refused = [&](Point2 seed) {
+    plate.holes = {seed};
+    const auto result = discretise_arcs(plate, {}, context);
+    EXPECT_TRUE(result || result.error().pointer == "/holes/0") << result.error().message;
+    return !result;
+  };
+  for (const double share : {0.1, 0.37, 0.5, 0.81}) EXPECT_TRUE(refused(on_arc(share))) << share;
+  // Within the arc, by less than its chords are.
+  const Point2 inwards = 1e-5 * (Point2{4, 0} - on_arc(0.5));
+  int beside = 0;
+  for (int i = 1; i < 100; ++i) beside += refused(on_arc(0.01 * i) + inwards) ? 1 : 0;
+  EXPECT_GT(beside, 50);
+  EXPECT_FALSE(refused(on_arc(0.5) - 1e3 * inwards));
+  EXPECT_FALSE(refused({4, 0}));
+  EXPECT_FALSE(refused({-3, 0}));
+  plate.holes.clear();
+  plate.regions = {{on_arc(0.3), 1}};
+  const auto region = discretise_arcs(plate, {}, context);
+  ASSERT_FALSE(region);
+  EXPECT_EQ(region.error().pointer, "/regions/0");
 }
 
 TEST(DiscretiseArcs, ChordsKeepTheError) {

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "core/plane/input/subdomains.hpp"
+#include "core/plane/symmetry/symmetrise.hpp"
 #include "tests/support/pslg_builders.hpp"
+#include "tests/support/shape_models.hpp"
 
 namespace symcell::plane {
 namespace {
@@ -30,6 +33,58 @@ void expect_valid(const Pslg& pslg) {
   ExecutionContext context;
   const auto result = validate_pslg(pslg, context);
   EXPECT_TRUE(result) << result.error().message;
+}
+
+// An outline that is open by little encloses nothing, and what lies within it would be all that is meshed.
+TEST(ValidatePslg, RefusesContoursThatAllButClose) {
+  Pslg pslg{
+      {{0, 0}, {40, 0}, {40, 40}, {0, 40}, {0, 0.01}}, {{0, 1}, {1, 2}, {2, 3}, {3, 4}}, {}, {}};
+  test::add_loop(pslg, test::polygon(12, 5, 0, {20, 20}), 1);
+  expect_error(pslg, ErrorCode::kDegenerateGeometry, {0, 4}, "/vertices/0");
+  // In two parts, with two gaps.
+  pslg.vertices.push_back({40, 39.995});
+  pslg.segments[1].b = static_cast<std::int32_t>(pslg.vertices.size()) - 1;
+  expect_error(pslg, ErrorCode::kDegenerateGeometry, {2, 17}, "/vertices/2");
+  // A seed that is no fault of its own.
+  pslg.holes = {{5, 5}};
+  ExecutionContext context;
+  const auto seed = validate_pslg(pslg, context);
+  ASSERT_FALSE(seed);
+  EXPECT_EQ(seed.error().code, ErrorCode::kUnreachableSeed);
+  EXPECT_NE(seed.error().message.find("a contour is open at vertices 2"), std::string::npos)
+      << seed.error().message;
+}
+
+// Lines that nobody drew to close anything.
+TEST(ValidatePslg, AcceptsCentreLinesAndHatches) {
+  Pslg pslg = square();
+  const auto line = [&](Point2 a, Point2 b) {
+    const auto first = static_cast<std::int32_t>(pslg.vertices.size());
+    pslg.vertices.insert(pslg.vertices.end(), {a, b});
+    pslg.segments.push_back({first, first + 1});
+  };
+  line({-3, 2}, {-1, 2});
+  line({-2, 1}, {-2, 1.9});
+  for (int i = 0; i < 20; ++i) line({6, 0.1 * i}, {9, 0.1 * i});
+  expect_valid(pslg);
+  ExecutionContext context;
+  const auto found = symmetrise(pslg, {}, context);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_TRUE(std::ranges::any_of(found->warnings, [](const Warning& w) {
+    return w.code == WarningCode::kEntitiesLeftOut && w.text.starts_with("22 pieces");
+  }));
+}
+
+TEST(ValidatePslg, TellsOfOpenContoursWithinTheMesh) {
+  Pslg pslg = square();
+  pslg.vertices.insert(pslg.vertices.end(), {{1, 1}, {3, 1}, {3, 3}, {1, 3}, {1, 1.001}});
+  for (std::int32_t i = 4; i < 8; ++i) pslg.segments.push_back({i, i + 1});
+  ExecutionContext context;
+  ASSERT_TRUE(validate_pslg(pslg, context));
+  const auto found = symmetrise(pslg, {}, context);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_TRUE(std::ranges::any_of(
+      found->warnings, [](const Warning& w) { return w.code == WarningCode::kOpenContour; }));
 }
 
 TEST(ValidatePslg, RefusesBadNumbersAndIndices) {
