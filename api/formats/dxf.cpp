@@ -10,6 +10,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 #include <variant>
@@ -233,28 +234,34 @@ class Collector final : public DL_CreationAdapter {
 
 class Builder {
  public:
-  Builder(const Collector& drawing, const DxfScan& scan) : drawing_(drawing), scan_(scan) {}
+  Builder(const Collector& drawing, const DxfScan& scan) : drawing_(drawing), scan_(scan) {
+    for (const std::string& layer : scan.hidden_layers) hidden_layers_.insert(lower(layer));
+  }
 
   Result<Pslg> run() {
     SYMCELL_TRY(check_flat());
     SYMCELL_TRY(place(drawing_.blocks.at(""), Placement{}, ""));
-    if (curves_.size() == 0) {
-      return fail(ErrorCode::kEmptyFile,
-                  "the drawing holds no lines, arcs or curves in model space" +
-                      (scan_.left_out.empty() ? std::string() : "; left out: " + listed()));
-    }
-    SYMCELL_TRY(curves_.finish(pslg_));
     pslg_.notes.left_out = scan_.left_out;
     if (skipped_ > 0) {
       pslg_.notes.left_out.push_back(std::to_string(skipped_) + " on the layer Defpoints");
     }
+    for (const auto& [layer, count] : left_hidden_) {
+      pslg_.notes.left_out.push_back(std::to_string(count) + " on the layer " + printable(layer) +
+                                     ", which is frozen or off");
+    }
+    if (curves_.size() == 0) {
+      return fail(ErrorCode::kEmptyFile,
+                  "the drawing holds no lines, arcs or curves in model space" +
+                      (pslg_.notes.left_out.empty() ? std::string() : "; left out: " + listed()));
+    }
+    SYMCELL_TRY(curves_.finish(pslg_));
     return std::move(pslg_);
   }
 
  private:
   [[nodiscard]] std::string listed() const {
     std::string text;
-    for (const std::string& what : scan_.left_out) text += (text.empty() ? "" : ", ") + what;
+    for (const std::string& what : pslg_.notes.left_out) text += (text.empty() ? "" : ", ") + what;
     return text;
   }
 
@@ -299,6 +306,11 @@ class Builder {
       const std::string& own = item.layer == "0" && !layer.empty() ? layer : item.layer;
       if (lower(own) == "defpoints") {
         ++skipped_;
+        continue;
+      }
+      // Nobody who looks at the drawing sees it.
+      if (hidden_layers_.contains(lower(own))) {
+        ++left_hidden_[own];
         continue;
       }
       SYMCELL_TRY(place(item, placement, own));
@@ -424,6 +436,8 @@ class Builder {
   std::vector<std::string> within_;  // blocks that are being placed
   std::size_t placed_ = 0;
   std::size_t skipped_ = 0;
+  std::set<std::string> hidden_layers_;             // in lower case
+  std::map<std::string, std::size_t> left_hidden_;  // entities by layer
 };
 
 }  // namespace

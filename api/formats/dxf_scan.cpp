@@ -19,6 +19,7 @@ constexpr std::string_view kBinary = "AutoCAD Binary DXF";
 
 // Kinds of group values, by code.
 constexpr int kType = 0, kName = 2, kColour = 62, kInvisible = 60, kPaperSpace = 67, kFlags = 70;
+constexpr std::int64_t kFrozen = 1;  // among the flags of a layer
 bool is_real(int code) {
   return (code >= 10 && code <= 59) || (code >= 210 && code <= 239);
 }
@@ -83,6 +84,8 @@ class Scanner {
         if (g.code == kName) section_ = g.value;
         in_header_ = false;
         if (is_read(section_)) result_.text += "0\nSECTION\n2\n" + section_ + "\n";
+      } else if (section_ == "TABLES") {
+        look_at_layer(g);
       } else if (kept_ != nullptr) {
         SYMCELL_TRY(take(g));
       }
@@ -153,6 +156,8 @@ class Scanner {
       in_header_ = true;
       return {};
     }
+    if (layer_) end_layer();
+    if (section_ == "TABLES" && g.value == "LAYER") layer_.emplace();
     if (g.value == "ENDSEC") {
       if (is_read(section_)) result_.text += "0\nENDSEC\n";
       section_.clear();
@@ -168,6 +173,20 @@ class Scanner {
       type_.clear();
     }
     return {};
+  }
+
+  void look_at_layer(const Group& g) {
+    if (!layer_) return;
+    if (g.code == kName) layer_->name = g.value;
+    if (g.code == kColour) layer_->hidden |= g.value.starts_with('-');  // it is off
+    if (g.code == kFlags) {
+      const auto flags = parse_integer(g.value);
+      layer_->hidden |= flags && (*flags & kFrozen) != 0;
+    }
+  }
+  void end_layer() {
+    if (layer_->hidden) result_.hidden_layers.insert(layer_->name);
+    layer_.reset();
   }
 
   Result<void> take(const Group& g) {
@@ -294,6 +313,11 @@ class Scanner {
   std::string_view rest_;
   std::size_t number_ = 0;  // of the line read last
   std::string section_;
+  struct Layer {
+    std::string name;
+    bool hidden = false;
+  };
+  std::optional<Layer> layer_;  // whose record is being read
   bool in_header_ = false;
   std::string type_;  // of the entity that is read; empty: none
   std::size_t line_ = 0;

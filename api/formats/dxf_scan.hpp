@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,8 @@ struct DxfEntity {
 struct DxfScan {
   std::string text;                 // of dxflib: the colour of an entity is its index in `entities`
   std::vector<DxfEntity> entities;  // of what is read, in order
-  std::vector<std::string> left_out;  // "3 HATCH", by name
+  std::vector<std::string> left_out;    // "3 HATCH", by name
+  std::set<std::string> hidden_layers;  // frozen or off
 };
 
 // Whether the bytes begin as a DXF file does, binary ones too.

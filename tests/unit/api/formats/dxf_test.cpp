@@ -150,6 +150,21 @@ TEST(Dxf, WhatIsNoPartOfTheModelIsLeftOutAndTold) {
   expect_error(drawing(paper), ErrorCode::kSyntax, "LINE of line");
 }
 
+TEST(Dxf, WhatNobodySeesIsLeftOutAndTold) {
+  const std::string layers = groups(
+      "0 SECTION 2 TABLES 0 TABLE 2 LAYER 70 3 0 LAYER 2 Dim 70 1 62 7 0 LAYER 2 Off 70 0 62 -7 "
+      "0 LAYER 2 Seen 70 64 62 7 0 ENDTAB 0 ENDSEC");
+  const std::string seen = line("seen", 0, 0, 1, 0);
+  const std::string unseen =
+      line("dim", 0, 0, 0, 1) + line("Off", 1, 0, 1, 1) + line("Off", 2, 0, 2, 1);
+  const Pslg pslg = read(layers + drawing(seen + unseen));
+  EXPECT_EQ(pslg.segments.size(), 1U);
+  EXPECT_EQ(pslg.notes.left_out,
+            (std::vector<std::string>{"2 on the layer Off, which is frozen or off",
+                                      "1 on the layer dim, which is frozen or off"}));
+  expect_error(layers + drawing(unseen), ErrorCode::kEmptyFile, "frozen or off");
+}
+
 TEST(Dxf, NamesWhatIsWrong) {
   const std::string good = drawing(line("0", 0, 0, 1, 0));
   for (std::size_t size = 30; size < good.size() - 5; size += 7) {
