@@ -65,6 +65,11 @@ struct Group {
   std::size_t line = 0;
 };
 
+struct Layer {
+  std::string name;
+  bool hidden = false;
+};
+
 class Scanner {
  public:
   explicit Scanner(std::string_view bytes) : rest_(bytes) {}
@@ -313,10 +318,6 @@ class Scanner {
   std::string_view rest_;
   std::size_t number_ = 0;  // of the line read last
   std::string section_;
-  struct Layer {
-    std::string name;
-    bool hidden = false;
-  };
   std::optional<Layer> layer_;  // whose record is being read
   bool in_header_ = false;
   std::string type_;  // of the entity that is read; empty: none
