@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/plane/symmetry/symmetrise.hpp"
 #include "tests/bench/bench_models.hpp"
 #include "tests/support/shape_models.hpp"
 
